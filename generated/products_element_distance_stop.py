@@ -116,7 +116,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[4] = t12*t9
             g[5] = t11*t12
             frames[index[first + AT_FRAME]] = way
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
+            frames[index[first + AT_FRAME] + 1] = way_rate
             frames[index[first + AT_FRAME] + 2] = ((t16 if -slow + t16 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
@@ -198,7 +198,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[4] = t23*t28 + t23*t31 - t30*t32
             vectors[5] = t25*t28 + t25*t31 - t30*t33
             kept[5] = delta_way
-            kept[6] = delta_speed_beyond
+            kept[6] = delta_way_rate
             kept[7] = (delta_kept_impact*(((0 if t39 > 0.0 else 1) if t40 > 0.0 else 0) if t34 >
                 0.0 else 0) + delta_kept_rate*((((0 if t37 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t39 > 0.0 else 0) if t40 > 0.0 else 0) if t34 > 0.0 else 0) +
@@ -224,13 +224,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t15 = -t13 + t14
             t16 = t14 if t15 > 0.0 else t13
             t17 = -kept_impact + t16
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t15 >
-                0.0 else 0) if t17 > 0.0 else 0) if -slow + (t16 if t17 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t15 > 0.0 else 0)
+                if t17 > 0.0 else 0) if -slow + (t16 if t17 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             bar_way = kept[5] + bar_value
-            bar_way_rate = bar_speed_beyond*side
+            bar_way_rate = kept[6] + bar_speed_beyond*side
             t18 = xa_x - xb_x
             t19 = -t18
             t20 = t19*t19

@@ -224,76 +224,79 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t52 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
             t53 = d1_y*t51 - d1_z*t52
             t54 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t55 = push*side
-            t56 = t55/(t44*t44 + t54*t54)
-            t57 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t58 = -d1_x*t45 + d1_z*t57
-            t59 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t60 = -d1_x*t48 + d1_z*t59
-            t61 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t62 = -d1_x*t51 + d1_z*t61
-            t63 = d1_x*t46 - d1_y*t57
-            t64 = d1_x*t49 - d1_y*t59
-            t65 = d1_x*t52 - d1_y*t61
-            t66 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t67 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-            t68 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-            t69 = d2_y*t67 - d2_z*t68
-            t70 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-            t71 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-            t72 = d2_y*t70 - d2_z*t71
-            t73 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-            t74 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-            t75 = d2_y*t73 - d2_z*t74
-            t76 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t77 = ratio*t55/(t66*t66 + t76*t76)
-            t78 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-            t79 = -d2_x*t67 + d2_z*t78
-            t80 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-            t81 = -d2_x*t70 + d2_z*t80
-            t82 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-            t83 = -d2_x*t73 + d2_z*t82
-            t84 = d2_x*t68 - d2_y*t78
-            t85 = d2_x*t71 - d2_y*t80
-            t86 = d2_x*t74 - d2_y*t82
-            t87 = atan2(t44, t54)
-            t88 = atan2(t66, t76)
-            t89 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t90 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t91 = t90 if -t89 + t90 > 0.0 else t89
-            t92 = t91 if -kept_impact + t91 > 0.0 else kept_impact
-            g[0] = (t56*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 +
+            t55 = 1/(t44*t44 + t54*t54)
+            t56 = push*side
+            t57 = t55*t56
+            t58 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t59 = -d1_x*t45 + d1_z*t58
+            t60 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t61 = -d1_x*t48 + d1_z*t60
+            t62 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t63 = -d1_x*t51 + d1_z*t62
+            t64 = d1_x*t46 - d1_y*t58
+            t65 = d1_x*t49 - d1_y*t60
+            t66 = d1_x*t52 - d1_y*t62
+            t67 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t68 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+            t69 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+            t70 = d2_y*t68 - d2_z*t69
+            t71 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+            t72 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+            t73 = d2_y*t71 - d2_z*t72
+            t74 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+            t75 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+            t76 = d2_y*t74 - d2_z*t75
+            t77 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t78 = ratio/(t67*t67 + t77*t77)
+            t79 = t56*t78
+            t80 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+            t81 = -d2_x*t68 + d2_z*t80
+            t82 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+            t83 = -d2_x*t71 + d2_z*t82
+            t84 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+            t85 = -d2_x*t74 + d2_z*t84
+            t86 = d2_x*t69 - d2_y*t80
+            t87 = d2_x*t72 - d2_y*t82
+            t88 = d2_x*t75 - d2_y*t84
+            t89 = atan2(t44, t54)
+            t90 = atan2(t67, t77)
+            t91 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t92 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t93 = t92 if -t91 + t92 > 0.0 else t91
+            t94 = t93 if -kept_impact + t93 > 0.0 else kept_impact
+            g[0] = (t57*(-t44*(n1_x*t47 + n1_y*t50 + n1_z*t53) + t54*(m1_x*t47 + m1_y*t50 +
                 m1_z*t53)))
-            g[1] = (t56*(-t44*(n1_x*t58 + n1_y*t60 + n1_z*t62) + t54*(m1_x*t58 + m1_y*t60 +
-                m1_z*t62)))
-            g[2] = (t56*(-t44*(n1_x*t63 + n1_y*t64 + n1_z*t65) + t54*(m1_x*t63 + m1_y*t64 +
-                m1_z*t65)))
-            g[3] = (t56*(-t44*(-angle_1_seen_2*n1_z + angle_1_seen_3*n1_y) +
+            g[1] = (t57*(-t44*(n1_x*t59 + n1_y*t61 + n1_z*t63) + t54*(m1_x*t59 + m1_y*t61 +
+                m1_z*t63)))
+            g[2] = (t57*(-t44*(n1_x*t64 + n1_y*t65 + n1_z*t66) + t54*(m1_x*t64 + m1_y*t65 +
+                m1_z*t66)))
+            g[3] = (t57*(-t44*(-angle_1_seen_2*n1_z + angle_1_seen_3*n1_y) +
                 t54*(-angle_1_seen_2*m1_z + angle_1_seen_3*m1_y)))
-            g[4] = (t56*(-t44*(angle_1_seen_1*n1_z - angle_1_seen_3*n1_x) +
+            g[4] = (t57*(-t44*(angle_1_seen_1*n1_z - angle_1_seen_3*n1_x) +
                 t54*(angle_1_seen_1*m1_z - angle_1_seen_3*m1_x)))
-            g[5] = (t56*(-t44*(-angle_1_seen_1*n1_y + angle_1_seen_2*n1_x) +
+            g[5] = (t57*(-t44*(-angle_1_seen_1*n1_y + angle_1_seen_2*n1_x) +
                 t54*(-angle_1_seen_1*m1_y + angle_1_seen_2*m1_x)))
-            g[6] = (-t77*(-t66*(n2_x*t69 + n2_y*t72 + n2_z*t75) + t76*(m2_x*t69 + m2_y*t72 +
-                m2_z*t75)))
-            g[7] = (-t77*(-t66*(n2_x*t79 + n2_y*t81 + n2_z*t83) + t76*(m2_x*t79 + m2_y*t81 +
-                m2_z*t83)))
-            g[8] = (-t77*(-t66*(n2_x*t84 + n2_y*t85 + n2_z*t86) + t76*(m2_x*t84 + m2_y*t85 +
-                m2_z*t86)))
-            g[9] = (-t77*(-t66*(-angle_2_seen_2*n2_z + angle_2_seen_3*n2_y) +
-                t76*(-angle_2_seen_2*m2_z + angle_2_seen_3*m2_y)))
-            g[10] = (-t77*(-t66*(angle_2_seen_1*n2_z - angle_2_seen_3*n2_x) +
-                t76*(angle_2_seen_1*m2_z - angle_2_seen_3*m2_x)))
-            g[11] = (-t77*(-t66*(-angle_2_seen_1*n2_y + angle_2_seen_2*n2_x) +
-                t76*(-angle_2_seen_1*m2_y + angle_2_seen_2*m2_x)))
-            frames[index[first + AT_FRAME]] = (t87 +
-                6.283185307179586*floor(0.15915494309189535*kept_angle_1 - 0.15915494309189535*t87
+            g[6] = (-t79*(-t67*(n2_x*t70 + n2_y*t73 + n2_z*t76) + t77*(m2_x*t70 + m2_y*t73 +
+                m2_z*t76)))
+            g[7] = (-t79*(-t67*(n2_x*t81 + n2_y*t83 + n2_z*t85) + t77*(m2_x*t81 + m2_y*t83 +
+                m2_z*t85)))
+            g[8] = (-t79*(-t67*(n2_x*t86 + n2_y*t87 + n2_z*t88) + t77*(m2_x*t86 + m2_y*t87 +
+                m2_z*t88)))
+            g[9] = (-t79*(-t67*(-angle_2_seen_2*n2_z + angle_2_seen_3*n2_y) +
+                t77*(-angle_2_seen_2*m2_z + angle_2_seen_3*m2_y)))
+            g[10] = (-t79*(-t67*(angle_2_seen_1*n2_z - angle_2_seen_3*n2_x) +
+                t77*(angle_2_seen_1*m2_z - angle_2_seen_3*m2_x)))
+            g[11] = (-t79*(-t67*(-angle_2_seen_1*n2_y + angle_2_seen_2*n2_x) +
+                t77*(-angle_2_seen_1*m2_y + angle_2_seen_2*m2_x)))
+            frames[index[first + AT_FRAME]] = (t89 +
+                6.283185307179586*floor(0.15915494309189535*kept_angle_1 - 0.15915494309189535*t89
                 + 0.5))
-            frames[index[first + AT_FRAME] + 1] = (t88 +
-                6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t88
+            frames[index[first + AT_FRAME] + 1] = (t90 +
+                6.283185307179586*floor(0.15915494309189535*kept_angle_2 - 0.15915494309189535*t90
                 + 0.5))
-            frames[index[first + AT_FRAME] + 2] = speed_beyond
-            frames[index[first + AT_FRAME] + 3] = ((t92 if -slow + t92 > 0.0 else 0.0) if touches
+            frames[index[first + AT_FRAME] + 2] = (t55*(angle_1_along_m*t54 - angle_1_along_n*t44)
+                - t78*(angle_2_along_m*t77 - angle_2_along_n*t67))
+            frames[index[first + AT_FRAME] + 3] = ((t94 if -slow + t94 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 4] = beyond
             frames[index[first + AT_FRAME] + 5] = push
@@ -569,252 +572,255 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t208 = 1/t207
             t209 = side*t208
             t210 = delta_push*t209
-            t211 = angle_1_seen_1*delta_m1_x
-            t212 = angle_1_seen_2*delta_m1_y
-            t213 = angle_1_seen_3*delta_m1_z
-            t214 = delta_angle_1_seen_1*m1_x
-            t215 = delta_angle_1_seen_2*m1_y
-            t216 = delta_angle_1_seen_3*m1_z
-            t217 = angle_1_seen_1*delta_n1_x
-            t218 = angle_1_seen_2*delta_n1_y
-            t219 = angle_1_seen_3*delta_n1_z
-            t220 = delta_angle_1_seen_1*n1_x
-            t221 = delta_angle_1_seen_2*n1_y
-            t222 = delta_angle_1_seen_3*n1_z
-            t223 = push*side
-            t224 = ((t223*(-t193*(2*t211 + 2*t212 + 2*t213 + 2*t214 + 2*t215 + 2*t216) -
-                t204*(2*t217 + 2*t218 + 2*t219 + 2*t220 + 2*t221 + 2*t222)))/(t207*t207))
-            t225 = t211 + t212 + t213 + t214 + t215 + t216
-            t226 = t217 + t218 + t219 + t220 + t221 + t222
-            t227 = Rb_xy*dthb_z - Rb_xz*dthb_y
-            t228 = Rb_yy*dthb_z - Rb_yz*dthb_y
-            t229 = Rb_zy*dthb_z - Rb_zz*dthb_y
-            t230 = Ra_xx*dtha_y - Ra_xy*dtha_x
-            t231 = Ra_yx*dtha_y - Ra_yy*dtha_x
-            t232 = Ra_zx*dtha_y - Ra_zy*dtha_x
-            t233 = Ra_xz*t227 + Ra_yz*t228 + Ra_zz*t229 + Rb_xx*t230 + Rb_yx*t231 + Rb_zx*t232
-            t234 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-            t235 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-            t236 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-            t237 = Ra_xy*t227 + Ra_yy*t228 + Ra_zy*t229 + Rb_xx*t234 + Rb_yx*t235 + Rb_zx*t236
-            t238 = d1_y*t233 - d1_z*t237 + delta_d1_y*t194 - delta_d1_z*t195
-            t239 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-            t240 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-            t241 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-            t242 = Ra_xz*t239 + Ra_yz*t240 + Ra_zz*t241 + Rb_xy*t230 + Rb_yy*t231 + Rb_zy*t232
-            t243 = Ra_xy*t239 + Ra_yy*t240 + Ra_zy*t241 + Rb_xy*t234 + Rb_yy*t235 + Rb_zy*t236
-            t244 = d1_y*t242 - d1_z*t243 + delta_d1_y*t197 - delta_d1_z*t198
-            t245 = Rb_xx*dthb_y - Rb_xy*dthb_x
-            t246 = Rb_yx*dthb_y - Rb_yy*dthb_x
-            t247 = Rb_zx*dthb_y - Rb_zy*dthb_x
-            t248 = Ra_xz*t245 + Ra_yz*t246 + Ra_zz*t247 + Rb_xz*t230 + Rb_yz*t231 + Rb_zz*t232
-            t249 = Ra_xy*t245 + Ra_yy*t246 + Ra_zy*t247 + Rb_xz*t234 + Rb_yz*t235 + Rb_zz*t236
-            t250 = d1_y*t248 - d1_z*t249 + delta_d1_y*t200 - delta_d1_z*t201
-            t251 = push*t209
-            t252 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t253 = -d1_x*t194 + d1_z*t252
-            t254 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t255 = -d1_x*t197 + d1_z*t254
-            t256 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t257 = -d1_x*t200 + d1_z*t256
-            t258 = n1_x*t253 + n1_y*t255 + n1_z*t257
-            t259 = m1_x*t253 + m1_y*t255 + m1_z*t257
-            t260 = -t193*t258 + t204*t259
-            t261 = Ra_xy*dtha_z - Ra_xz*dtha_y
-            t262 = Ra_yy*dtha_z - Ra_yz*dtha_y
-            t263 = Ra_zy*dtha_z - Ra_zz*dtha_y
-            t264 = Ra_xx*t227 + Ra_yx*t228 + Ra_zx*t229 + Rb_xx*t261 + Rb_yx*t262 + Rb_zx*t263
-            t265 = -d1_x*t233 + d1_z*t264 - delta_d1_x*t194 + delta_d1_z*t252
-            t266 = Ra_xx*t239 + Ra_yx*t240 + Ra_zx*t241 + Rb_xy*t261 + Rb_yy*t262 + Rb_zy*t263
-            t267 = -d1_x*t242 + d1_z*t266 - delta_d1_x*t197 + delta_d1_z*t254
-            t268 = Ra_xx*t245 + Ra_yx*t246 + Ra_zx*t247 + Rb_xz*t261 + Rb_yz*t262 + Rb_zz*t263
-            t269 = -d1_x*t248 + d1_z*t268 - delta_d1_x*t200 + delta_d1_z*t256
-            t270 = d1_x*t195 - d1_y*t252
-            t271 = d1_x*t198 - d1_y*t254
-            t272 = d1_x*t201 - d1_y*t256
-            t273 = n1_x*t270 + n1_y*t271 + n1_z*t272
-            t274 = m1_x*t270 + m1_y*t271 + m1_z*t272
-            t275 = -t193*t273 + t204*t274
-            t276 = d1_x*t237 - d1_y*t264 + delta_d1_x*t195 - delta_d1_y*t252
-            t277 = d1_x*t243 - d1_y*t266 + delta_d1_x*t198 - delta_d1_y*t254
-            t278 = d1_x*t249 - d1_y*t268 + delta_d1_x*t201 - delta_d1_y*t256
-            t279 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
-            t280 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
-            t281 = -t193*t280 + t204*t279
-            t282 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
-            t283 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
-            t284 = -t193*t283 + t204*t282
-            t285 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
-            t286 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
-            t287 = -t193*t286 + t204*t285
-            t288 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t289 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t290 = t288*t288 + t289*t289
-            t291 = 1/t290
-            t292 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-            t293 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-            t294 = d2_y*t292 - d2_z*t293
-            t295 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-            t296 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-            t297 = d2_y*t295 - d2_z*t296
-            t298 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-            t299 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-            t300 = d2_y*t298 - d2_z*t299
-            t301 = n2_x*t294 + n2_y*t297 + n2_z*t300
-            t302 = m2_x*t294 + m2_y*t297 + m2_z*t300
-            t303 = -t288*t301 + t289*t302
-            t304 = t291*t303
-            t305 = delta_push*ratio*side
-            t306 = delta_ratio*t223
-            t307 = angle_2_seen_1*delta_m2_x
-            t308 = angle_2_seen_2*delta_m2_y
-            t309 = angle_2_seen_3*delta_m2_z
-            t310 = delta_angle_2_seen_1*m2_x
-            t311 = delta_angle_2_seen_2*m2_y
-            t312 = delta_angle_2_seen_3*m2_z
-            t313 = angle_2_seen_1*delta_n2_x
-            t314 = angle_2_seen_2*delta_n2_y
-            t315 = angle_2_seen_3*delta_n2_z
-            t316 = delta_angle_2_seen_1*n2_x
-            t317 = delta_angle_2_seen_2*n2_y
-            t318 = delta_angle_2_seen_3*n2_z
-            t319 = ratio*t223
-            t320 = ((t319*(-t288*(2*t307 + 2*t308 + 2*t309 + 2*t310 + 2*t311 + 2*t312) -
-                t289*(2*t313 + 2*t314 + 2*t315 + 2*t316 + 2*t317 + 2*t318)))/(t290*t290))
-            t321 = t307 + t308 + t309 + t310 + t311 + t312
-            t322 = t313 + t314 + t315 + t316 + t317 + t318
-            t323 = Rd_xy*dthd_z - Rd_xz*dthd_y
-            t324 = Rd_yy*dthd_z - Rd_yz*dthd_y
-            t325 = Rd_zy*dthd_z - Rd_zz*dthd_y
-            t326 = Rc_xx*dthc_y - Rc_xy*dthc_x
-            t327 = Rc_yx*dthc_y - Rc_yy*dthc_x
-            t328 = Rc_zx*dthc_y - Rc_zy*dthc_x
-            t329 = Rc_xz*t323 + Rc_yz*t324 + Rc_zz*t325 + Rd_xx*t326 + Rd_yx*t327 + Rd_zx*t328
-            t330 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-            t331 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-            t332 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-            t333 = Rc_xy*t323 + Rc_yy*t324 + Rc_zy*t325 + Rd_xx*t330 + Rd_yx*t331 + Rd_zx*t332
-            t334 = d2_y*t329 - d2_z*t333 + delta_d2_y*t292 - delta_d2_z*t293
-            t335 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-            t336 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-            t337 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-            t338 = Rc_xz*t335 + Rc_yz*t336 + Rc_zz*t337 + Rd_xy*t326 + Rd_yy*t327 + Rd_zy*t328
-            t339 = Rc_xy*t335 + Rc_yy*t336 + Rc_zy*t337 + Rd_xy*t330 + Rd_yy*t331 + Rd_zy*t332
-            t340 = d2_y*t338 - d2_z*t339 + delta_d2_y*t295 - delta_d2_z*t296
-            t341 = Rd_xx*dthd_y - Rd_xy*dthd_x
-            t342 = Rd_yx*dthd_y - Rd_yy*dthd_x
-            t343 = Rd_zx*dthd_y - Rd_zy*dthd_x
-            t344 = Rc_xz*t341 + Rc_yz*t342 + Rc_zz*t343 + Rd_xz*t326 + Rd_yz*t327 + Rd_zz*t328
-            t345 = Rc_xy*t341 + Rc_yy*t342 + Rc_zy*t343 + Rd_xz*t330 + Rd_yz*t331 + Rd_zz*t332
-            t346 = d2_y*t344 - d2_z*t345 + delta_d2_y*t298 - delta_d2_z*t299
-            t347 = t291*t319
-            t348 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-            t349 = -d2_x*t292 + d2_z*t348
-            t350 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-            t351 = -d2_x*t295 + d2_z*t350
-            t352 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-            t353 = -d2_x*t298 + d2_z*t352
-            t354 = n2_x*t349 + n2_y*t351 + n2_z*t353
-            t355 = m2_x*t349 + m2_y*t351 + m2_z*t353
-            t356 = -t288*t354 + t289*t355
-            t357 = t291*t356
-            t358 = Rc_xy*dthc_z - Rc_xz*dthc_y
-            t359 = Rc_yy*dthc_z - Rc_yz*dthc_y
-            t360 = Rc_zy*dthc_z - Rc_zz*dthc_y
-            t361 = Rc_xx*t323 + Rc_yx*t324 + Rc_zx*t325 + Rd_xx*t358 + Rd_yx*t359 + Rd_zx*t360
-            t362 = -d2_x*t329 + d2_z*t361 - delta_d2_x*t292 + delta_d2_z*t348
-            t363 = Rc_xx*t335 + Rc_yx*t336 + Rc_zx*t337 + Rd_xy*t358 + Rd_yy*t359 + Rd_zy*t360
-            t364 = -d2_x*t338 + d2_z*t363 - delta_d2_x*t295 + delta_d2_z*t350
-            t365 = Rc_xx*t341 + Rc_yx*t342 + Rc_zx*t343 + Rd_xz*t358 + Rd_yz*t359 + Rd_zz*t360
-            t366 = -d2_x*t344 + d2_z*t365 - delta_d2_x*t298 + delta_d2_z*t352
-            t367 = d2_x*t293 - d2_y*t348
-            t368 = d2_x*t296 - d2_y*t350
-            t369 = d2_x*t299 - d2_y*t352
-            t370 = n2_x*t367 + n2_y*t368 + n2_z*t369
-            t371 = m2_x*t367 + m2_y*t368 + m2_z*t369
-            t372 = -t288*t370 + t289*t371
-            t373 = t291*t372
-            t374 = d2_x*t333 - d2_y*t361 + delta_d2_x*t293 - delta_d2_y*t348
-            t375 = d2_x*t339 - d2_y*t363 + delta_d2_x*t296 - delta_d2_y*t350
-            t376 = d2_x*t345 - d2_y*t365 + delta_d2_x*t299 - delta_d2_y*t352
-            t377 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
-            t378 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
-            t379 = -t288*t378 + t289*t377
-            t380 = t291*t379
+            t211 = 1/(t207*t207)
+            t212 = angle_1_seen_1*delta_m1_x
+            t213 = angle_1_seen_2*delta_m1_y
+            t214 = angle_1_seen_3*delta_m1_z
+            t215 = delta_angle_1_seen_1*m1_x
+            t216 = delta_angle_1_seen_2*m1_y
+            t217 = delta_angle_1_seen_3*m1_z
+            t218 = angle_1_seen_1*delta_n1_x
+            t219 = angle_1_seen_2*delta_n1_y
+            t220 = angle_1_seen_3*delta_n1_z
+            t221 = delta_angle_1_seen_1*n1_x
+            t222 = delta_angle_1_seen_2*n1_y
+            t223 = delta_angle_1_seen_3*n1_z
+            t224 = (-t193*(2*t212 + 2*t213 + 2*t214 + 2*t215 + 2*t216 + 2*t217) - t204*(2*t218 +
+                2*t219 + 2*t220 + 2*t221 + 2*t222 + 2*t223))
+            t225 = push*side
+            t226 = t211*t224*t225
+            t227 = t212 + t213 + t214 + t215 + t216 + t217
+            t228 = t218 + t219 + t220 + t221 + t222 + t223
+            t229 = Rb_xy*dthb_z - Rb_xz*dthb_y
+            t230 = Rb_yy*dthb_z - Rb_yz*dthb_y
+            t231 = Rb_zy*dthb_z - Rb_zz*dthb_y
+            t232 = Ra_xx*dtha_y - Ra_xy*dtha_x
+            t233 = Ra_yx*dtha_y - Ra_yy*dtha_x
+            t234 = Ra_zx*dtha_y - Ra_zy*dtha_x
+            t235 = Ra_xz*t229 + Ra_yz*t230 + Ra_zz*t231 + Rb_xx*t232 + Rb_yx*t233 + Rb_zx*t234
+            t236 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+            t237 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+            t238 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+            t239 = Ra_xy*t229 + Ra_yy*t230 + Ra_zy*t231 + Rb_xx*t236 + Rb_yx*t237 + Rb_zx*t238
+            t240 = d1_y*t235 - d1_z*t239 + delta_d1_y*t194 - delta_d1_z*t195
+            t241 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+            t242 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+            t243 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+            t244 = Ra_xz*t241 + Ra_yz*t242 + Ra_zz*t243 + Rb_xy*t232 + Rb_yy*t233 + Rb_zy*t234
+            t245 = Ra_xy*t241 + Ra_yy*t242 + Ra_zy*t243 + Rb_xy*t236 + Rb_yy*t237 + Rb_zy*t238
+            t246 = d1_y*t244 - d1_z*t245 + delta_d1_y*t197 - delta_d1_z*t198
+            t247 = Rb_xx*dthb_y - Rb_xy*dthb_x
+            t248 = Rb_yx*dthb_y - Rb_yy*dthb_x
+            t249 = Rb_zx*dthb_y - Rb_zy*dthb_x
+            t250 = Ra_xz*t247 + Ra_yz*t248 + Ra_zz*t249 + Rb_xz*t232 + Rb_yz*t233 + Rb_zz*t234
+            t251 = Ra_xy*t247 + Ra_yy*t248 + Ra_zy*t249 + Rb_xz*t236 + Rb_yz*t237 + Rb_zz*t238
+            t252 = d1_y*t250 - d1_z*t251 + delta_d1_y*t200 - delta_d1_z*t201
+            t253 = push*t209
+            t254 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t255 = -d1_x*t194 + d1_z*t254
+            t256 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t257 = -d1_x*t197 + d1_z*t256
+            t258 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t259 = -d1_x*t200 + d1_z*t258
+            t260 = n1_x*t255 + n1_y*t257 + n1_z*t259
+            t261 = m1_x*t255 + m1_y*t257 + m1_z*t259
+            t262 = -t193*t260 + t204*t261
+            t263 = Ra_xy*dtha_z - Ra_xz*dtha_y
+            t264 = Ra_yy*dtha_z - Ra_yz*dtha_y
+            t265 = Ra_zy*dtha_z - Ra_zz*dtha_y
+            t266 = Ra_xx*t229 + Ra_yx*t230 + Ra_zx*t231 + Rb_xx*t263 + Rb_yx*t264 + Rb_zx*t265
+            t267 = -d1_x*t235 + d1_z*t266 - delta_d1_x*t194 + delta_d1_z*t254
+            t268 = Ra_xx*t241 + Ra_yx*t242 + Ra_zx*t243 + Rb_xy*t263 + Rb_yy*t264 + Rb_zy*t265
+            t269 = -d1_x*t244 + d1_z*t268 - delta_d1_x*t197 + delta_d1_z*t256
+            t270 = Ra_xx*t247 + Ra_yx*t248 + Ra_zx*t249 + Rb_xz*t263 + Rb_yz*t264 + Rb_zz*t265
+            t271 = -d1_x*t250 + d1_z*t270 - delta_d1_x*t200 + delta_d1_z*t258
+            t272 = d1_x*t195 - d1_y*t254
+            t273 = d1_x*t198 - d1_y*t256
+            t274 = d1_x*t201 - d1_y*t258
+            t275 = n1_x*t272 + n1_y*t273 + n1_z*t274
+            t276 = m1_x*t272 + m1_y*t273 + m1_z*t274
+            t277 = -t193*t275 + t204*t276
+            t278 = d1_x*t239 - d1_y*t266 + delta_d1_x*t195 - delta_d1_y*t254
+            t279 = d1_x*t245 - d1_y*t268 + delta_d1_x*t198 - delta_d1_y*t256
+            t280 = d1_x*t251 - d1_y*t270 + delta_d1_x*t201 - delta_d1_y*t258
+            t281 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
+            t282 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
+            t283 = -t193*t282 + t204*t281
+            t284 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
+            t285 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
+            t286 = -t193*t285 + t204*t284
+            t287 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
+            t288 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
+            t289 = -t193*t288 + t204*t287
+            t290 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t291 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+            t292 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+            t293 = d2_y*t291 - d2_z*t292
+            t294 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+            t295 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+            t296 = d2_y*t294 - d2_z*t295
+            t297 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+            t298 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+            t299 = d2_y*t297 - d2_z*t298
+            t300 = n2_x*t293 + n2_y*t296 + n2_z*t299
+            t301 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t302 = m2_x*t293 + m2_y*t296 + m2_z*t299
+            t303 = -t290*t300 + t301*t302
+            t304 = t290*t290 + t301*t301
+            t305 = 1/t304
+            t306 = ratio*t305
+            t307 = delta_push*side*t306
+            t308 = delta_ratio*t305
+            t309 = t225*t308
+            t310 = angle_2_seen_1*delta_m2_x
+            t311 = angle_2_seen_2*delta_m2_y
+            t312 = angle_2_seen_3*delta_m2_z
+            t313 = delta_angle_2_seen_1*m2_x
+            t314 = delta_angle_2_seen_2*m2_y
+            t315 = delta_angle_2_seen_3*m2_z
+            t316 = angle_2_seen_1*delta_n2_x
+            t317 = angle_2_seen_2*delta_n2_y
+            t318 = angle_2_seen_3*delta_n2_z
+            t319 = delta_angle_2_seen_1*n2_x
+            t320 = delta_angle_2_seen_2*n2_y
+            t321 = delta_angle_2_seen_3*n2_z
+            t322 = ((ratio*(-t290*(2*t310 + 2*t311 + 2*t312 + 2*t313 + 2*t314 + 2*t315) -
+                t301*(2*t316 + 2*t317 + 2*t318 + 2*t319 + 2*t320 + 2*t321)))/(t304*t304))
+            t323 = t225*t322
+            t324 = t310 + t311 + t312 + t313 + t314 + t315
+            t325 = t316 + t317 + t318 + t319 + t320 + t321
+            t326 = Rd_xy*dthd_z - Rd_xz*dthd_y
+            t327 = Rd_yy*dthd_z - Rd_yz*dthd_y
+            t328 = Rd_zy*dthd_z - Rd_zz*dthd_y
+            t329 = Rc_xx*dthc_y - Rc_xy*dthc_x
+            t330 = Rc_yx*dthc_y - Rc_yy*dthc_x
+            t331 = Rc_zx*dthc_y - Rc_zy*dthc_x
+            t332 = Rc_xz*t326 + Rc_yz*t327 + Rc_zz*t328 + Rd_xx*t329 + Rd_yx*t330 + Rd_zx*t331
+            t333 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+            t334 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+            t335 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+            t336 = Rc_xy*t326 + Rc_yy*t327 + Rc_zy*t328 + Rd_xx*t333 + Rd_yx*t334 + Rd_zx*t335
+            t337 = d2_y*t332 - d2_z*t336 + delta_d2_y*t291 - delta_d2_z*t292
+            t338 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+            t339 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+            t340 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+            t341 = Rc_xz*t338 + Rc_yz*t339 + Rc_zz*t340 + Rd_xy*t329 + Rd_yy*t330 + Rd_zy*t331
+            t342 = Rc_xy*t338 + Rc_yy*t339 + Rc_zy*t340 + Rd_xy*t333 + Rd_yy*t334 + Rd_zy*t335
+            t343 = d2_y*t341 - d2_z*t342 + delta_d2_y*t294 - delta_d2_z*t295
+            t344 = Rd_xx*dthd_y - Rd_xy*dthd_x
+            t345 = Rd_yx*dthd_y - Rd_yy*dthd_x
+            t346 = Rd_zx*dthd_y - Rd_zy*dthd_x
+            t347 = Rc_xz*t344 + Rc_yz*t345 + Rc_zz*t346 + Rd_xz*t329 + Rd_yz*t330 + Rd_zz*t331
+            t348 = Rc_xy*t344 + Rc_yy*t345 + Rc_zy*t346 + Rd_xz*t333 + Rd_yz*t334 + Rd_zz*t335
+            t349 = d2_y*t347 - d2_z*t348 + delta_d2_y*t297 - delta_d2_z*t298
+            t350 = t225*t306
+            t351 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+            t352 = -d2_x*t291 + d2_z*t351
+            t353 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+            t354 = -d2_x*t294 + d2_z*t353
+            t355 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+            t356 = -d2_x*t297 + d2_z*t355
+            t357 = n2_x*t352 + n2_y*t354 + n2_z*t356
+            t358 = m2_x*t352 + m2_y*t354 + m2_z*t356
+            t359 = -t290*t357 + t301*t358
+            t360 = Rc_xy*dthc_z - Rc_xz*dthc_y
+            t361 = Rc_yy*dthc_z - Rc_yz*dthc_y
+            t362 = Rc_zy*dthc_z - Rc_zz*dthc_y
+            t363 = Rc_xx*t326 + Rc_yx*t327 + Rc_zx*t328 + Rd_xx*t360 + Rd_yx*t361 + Rd_zx*t362
+            t364 = -d2_x*t332 + d2_z*t363 - delta_d2_x*t291 + delta_d2_z*t351
+            t365 = Rc_xx*t338 + Rc_yx*t339 + Rc_zx*t340 + Rd_xy*t360 + Rd_yy*t361 + Rd_zy*t362
+            t366 = -d2_x*t341 + d2_z*t365 - delta_d2_x*t294 + delta_d2_z*t353
+            t367 = Rc_xx*t344 + Rc_yx*t345 + Rc_zx*t346 + Rd_xz*t360 + Rd_yz*t361 + Rd_zz*t362
+            t368 = -d2_x*t347 + d2_z*t367 - delta_d2_x*t297 + delta_d2_z*t355
+            t369 = d2_x*t292 - d2_y*t351
+            t370 = d2_x*t295 - d2_y*t353
+            t371 = d2_x*t298 - d2_y*t355
+            t372 = n2_x*t369 + n2_y*t370 + n2_z*t371
+            t373 = m2_x*t369 + m2_y*t370 + m2_z*t371
+            t374 = -t290*t372 + t301*t373
+            t375 = d2_x*t336 - d2_y*t363 + delta_d2_x*t292 - delta_d2_y*t351
+            t376 = d2_x*t342 - d2_y*t365 + delta_d2_x*t295 - delta_d2_y*t353
+            t377 = d2_x*t348 - d2_y*t367 + delta_d2_x*t298 - delta_d2_y*t355
+            t378 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
+            t379 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
+            t380 = -t290*t379 + t301*t378
             t381 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
             t382 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
-            t383 = -t288*t382 + t289*t381
-            t384 = t291*t383
-            t385 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
-            t386 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
-            t387 = -t288*t386 + t289*t385
-            t388 = t291*t387
-            t389 = touches - 0.5
-            t390 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t391 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t392 = -t390 + t391
-            t393 = t391 if t392 > 0.0 else t390
-            t394 = -kept_impact + t393
-            t395 = -slow + (t393 if t394 > 0.0 else kept_impact)
-            vectors[0] = (t206*t210 + t206*t224 + t251*(-t193*(delta_n1_x*t196 + delta_n1_y*t199 +
-                delta_n1_z*t202 + n1_x*t238 + n1_y*t244 + n1_z*t250) - t203*t225 +
-                t204*(delta_m1_x*t196 + delta_m1_y*t199 + delta_m1_z*t202 + m1_x*t238 + m1_y*t244
-                + m1_z*t250) + t205*t226))
-            vectors[1] = (t210*t260 + t224*t260 + t251*(-t193*(delta_n1_x*t253 + delta_n1_y*t255 +
-                delta_n1_z*t257 + n1_x*t265 + n1_y*t267 + n1_z*t269) + t204*(delta_m1_x*t253 +
-                delta_m1_y*t255 + delta_m1_z*t257 + m1_x*t265 + m1_y*t267 + m1_z*t269) - t225*t258
-                + t226*t259))
-            vectors[2] = (t210*t275 + t224*t275 + t251*(-t193*(delta_n1_x*t270 + delta_n1_y*t271 +
-                delta_n1_z*t272 + n1_x*t276 + n1_y*t277 + n1_z*t278) + t204*(delta_m1_x*t270 +
-                delta_m1_y*t271 + delta_m1_z*t272 + m1_x*t276 + m1_y*t277 + m1_z*t278) - t225*t273
-                + t226*t274))
-            vectors[3] = (t210*t281 + t224*t281 + t251*(-t193*(-angle_1_seen_2*delta_n1_z +
+            t383 = -t290*t382 + t301*t381
+            t384 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
+            t385 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
+            t386 = -t290*t385 + t301*t384
+            t387 = angle_2_along_m*t301 - angle_2_along_n*t290
+            t388 = touches - 0.5
+            t389 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t390 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t391 = -t389 + t390
+            t392 = t390 if t391 > 0.0 else t389
+            t393 = -kept_impact + t392
+            t394 = -slow + (t392 if t393 > 0.0 else kept_impact)
+            vectors[0] = (t206*t210 + t206*t226 + t253*(-t193*(delta_n1_x*t196 + delta_n1_y*t199 +
+                delta_n1_z*t202 + n1_x*t240 + n1_y*t246 + n1_z*t252) - t203*t227 +
+                t204*(delta_m1_x*t196 + delta_m1_y*t199 + delta_m1_z*t202 + m1_x*t240 + m1_y*t246
+                + m1_z*t252) + t205*t228))
+            vectors[1] = (t210*t262 + t226*t262 + t253*(-t193*(delta_n1_x*t255 + delta_n1_y*t257 +
+                delta_n1_z*t259 + n1_x*t267 + n1_y*t269 + n1_z*t271) + t204*(delta_m1_x*t255 +
+                delta_m1_y*t257 + delta_m1_z*t259 + m1_x*t267 + m1_y*t269 + m1_z*t271) - t227*t260
+                + t228*t261))
+            vectors[2] = (t210*t277 + t226*t277 + t253*(-t193*(delta_n1_x*t272 + delta_n1_y*t273 +
+                delta_n1_z*t274 + n1_x*t278 + n1_y*t279 + n1_z*t280) + t204*(delta_m1_x*t272 +
+                delta_m1_y*t273 + delta_m1_z*t274 + m1_x*t278 + m1_y*t279 + m1_z*t280) - t227*t275
+                + t228*t276))
+            vectors[3] = (t210*t283 + t226*t283 + t253*(-t193*(-angle_1_seen_2*delta_n1_z +
                 angle_1_seen_3*delta_n1_y - delta_angle_1_seen_2*n1_z + delta_angle_1_seen_3*n1_y)
                 + t204*(-angle_1_seen_2*delta_m1_z + angle_1_seen_3*delta_m1_y -
-                delta_angle_1_seen_2*m1_z + delta_angle_1_seen_3*m1_y) - t225*t280 + t226*t279))
-            vectors[4] = (t210*t284 + t224*t284 + t251*(-t193*(angle_1_seen_1*delta_n1_z -
+                delta_angle_1_seen_2*m1_z + delta_angle_1_seen_3*m1_y) - t227*t282 + t228*t281))
+            vectors[4] = (t210*t286 + t226*t286 + t253*(-t193*(angle_1_seen_1*delta_n1_z -
                 angle_1_seen_3*delta_n1_x + delta_angle_1_seen_1*n1_z - delta_angle_1_seen_3*n1_x)
                 + t204*(angle_1_seen_1*delta_m1_z - angle_1_seen_3*delta_m1_x +
-                delta_angle_1_seen_1*m1_z - delta_angle_1_seen_3*m1_x) - t225*t283 + t226*t282))
-            vectors[5] = (t210*t287 + t224*t287 + t251*(-t193*(-angle_1_seen_1*delta_n1_y +
+                delta_angle_1_seen_1*m1_z - delta_angle_1_seen_3*m1_x) - t227*t285 + t228*t284))
+            vectors[5] = (t210*t289 + t226*t289 + t253*(-t193*(-angle_1_seen_1*delta_n1_y +
                 angle_1_seen_2*delta_n1_x - delta_angle_1_seen_1*n1_y + delta_angle_1_seen_2*n1_x)
                 + t204*(-angle_1_seen_1*delta_m1_y + angle_1_seen_2*delta_m1_x -
-                delta_angle_1_seen_1*m1_y + delta_angle_1_seen_2*m1_x) - t225*t286 + t226*t285))
-            vectors[6] = (-t303*t320 - t304*t305 - t304*t306 - t347*(-t288*(delta_n2_x*t294 +
-                delta_n2_y*t297 + delta_n2_z*t300 + n2_x*t334 + n2_y*t340 + n2_z*t346) +
-                t289*(delta_m2_x*t294 + delta_m2_y*t297 + delta_m2_z*t300 + m2_x*t334 + m2_y*t340
-                + m2_z*t346) - t301*t321 + t302*t322))
-            vectors[7] = (-t305*t357 - t306*t357 - t320*t356 - t347*(-t288*(delta_n2_x*t349 +
-                delta_n2_y*t351 + delta_n2_z*t353 + n2_x*t362 + n2_y*t364 + n2_z*t366) +
-                t289*(delta_m2_x*t349 + delta_m2_y*t351 + delta_m2_z*t353 + m2_x*t362 + m2_y*t364
-                + m2_z*t366) - t321*t354 + t322*t355))
-            vectors[8] = (-t305*t373 - t306*t373 - t320*t372 - t347*(-t288*(delta_n2_x*t367 +
-                delta_n2_y*t368 + delta_n2_z*t369 + n2_x*t374 + n2_y*t375 + n2_z*t376) +
-                t289*(delta_m2_x*t367 + delta_m2_y*t368 + delta_m2_z*t369 + m2_x*t374 + m2_y*t375
-                + m2_z*t376) - t321*t370 + t322*t371))
-            vectors[9] = (-t305*t380 - t306*t380 - t320*t379 -
-                t347*(-t288*(-angle_2_seen_2*delta_n2_z + angle_2_seen_3*delta_n2_y -
+                delta_angle_1_seen_1*m1_y + delta_angle_1_seen_2*m1_x) - t227*t288 + t228*t287))
+            vectors[6] = (-t303*t307 - t303*t309 - t303*t323 - t350*(-t290*(delta_n2_x*t293 +
+                delta_n2_y*t296 + delta_n2_z*t299 + n2_x*t337 + n2_y*t343 + n2_z*t349) - t300*t324
+                + t301*(delta_m2_x*t293 + delta_m2_y*t296 + delta_m2_z*t299 + m2_x*t337 +
+                m2_y*t343 + m2_z*t349) + t302*t325))
+            vectors[7] = (-t307*t359 - t309*t359 - t323*t359 - t350*(-t290*(delta_n2_x*t352 +
+                delta_n2_y*t354 + delta_n2_z*t356 + n2_x*t364 + n2_y*t366 + n2_z*t368) +
+                t301*(delta_m2_x*t352 + delta_m2_y*t354 + delta_m2_z*t356 + m2_x*t364 + m2_y*t366
+                + m2_z*t368) - t324*t357 + t325*t358))
+            vectors[8] = (-t307*t374 - t309*t374 - t323*t374 - t350*(-t290*(delta_n2_x*t369 +
+                delta_n2_y*t370 + delta_n2_z*t371 + n2_x*t375 + n2_y*t376 + n2_z*t377) +
+                t301*(delta_m2_x*t369 + delta_m2_y*t370 + delta_m2_z*t371 + m2_x*t375 + m2_y*t376
+                + m2_z*t377) - t324*t372 + t325*t373))
+            vectors[9] = (-t307*t380 - t309*t380 - t323*t380 -
+                t350*(-t290*(-angle_2_seen_2*delta_n2_z + angle_2_seen_3*delta_n2_y -
                 delta_angle_2_seen_2*n2_z + delta_angle_2_seen_3*n2_y) +
-                t289*(-angle_2_seen_2*delta_m2_z + angle_2_seen_3*delta_m2_y -
-                delta_angle_2_seen_2*m2_z + delta_angle_2_seen_3*m2_y) - t321*t378 + t322*t377))
-            vectors[10] = (-t305*t384 - t306*t384 - t320*t383 -
-                t347*(-t288*(angle_2_seen_1*delta_n2_z - angle_2_seen_3*delta_n2_x +
+                t301*(-angle_2_seen_2*delta_m2_z + angle_2_seen_3*delta_m2_y -
+                delta_angle_2_seen_2*m2_z + delta_angle_2_seen_3*m2_y) - t324*t379 + t325*t378))
+            vectors[10] = (-t307*t383 - t309*t383 - t323*t383 -
+                t350*(-t290*(angle_2_seen_1*delta_n2_z - angle_2_seen_3*delta_n2_x +
                 delta_angle_2_seen_1*n2_z - delta_angle_2_seen_3*n2_x) +
-                t289*(angle_2_seen_1*delta_m2_z - angle_2_seen_3*delta_m2_x +
-                delta_angle_2_seen_1*m2_z - delta_angle_2_seen_3*m2_x) - t321*t382 + t322*t381))
-            vectors[11] = (-t305*t388 - t306*t388 - t320*t387 -
-                t347*(-t288*(-angle_2_seen_1*delta_n2_y + angle_2_seen_2*delta_n2_x -
+                t301*(angle_2_seen_1*delta_m2_z - angle_2_seen_3*delta_m2_x +
+                delta_angle_2_seen_1*m2_z - delta_angle_2_seen_3*m2_x) - t324*t382 + t325*t381))
+            vectors[11] = (-t307*t386 - t309*t386 - t323*t386 -
+                t350*(-t290*(-angle_2_seen_1*delta_n2_y + angle_2_seen_2*delta_n2_x -
                 delta_angle_2_seen_1*n2_y + delta_angle_2_seen_2*n2_x) +
-                t289*(-angle_2_seen_1*delta_m2_y + angle_2_seen_2*delta_m2_x -
-                delta_angle_2_seen_1*m2_y + delta_angle_2_seen_2*m2_x) - t321*t386 + t322*t385))
-            kept[6] = -t193*t208*t226 + t204*t208*t225
-            kept[7] = -t288*t291*t322 + t289*t291*t321
-            kept[8] = delta_speed_beyond
-            kept[9] = (delta_kept_impact*(((0 if t394 > 0.0 else 1) if t395 > 0.0 else 0) if t389
-                > 0.0 else 0) + delta_kept_rate*((((0 if t392 > 0.0 else (1 if kept_rate > 0.0
-                else -1)) if t394 > 0.0 else 0) if t395 > 0.0 else 0) if t389 > 0.0 else 0) +
-                delta_speed_beyond*(((((1 if speed_beyond > 0.0 else -1) if t392 > 0.0 else 0) if
-                t394 > 0.0 else 0) if t395 > 0.0 else 0) if t389 > 0.0 else 0))
+                t301*(-angle_2_seen_1*delta_m2_y + angle_2_seen_2*delta_m2_x -
+                delta_angle_2_seen_1*m2_y + delta_angle_2_seen_2*m2_x) - t324*t385 + t325*t384))
+            kept[6] = -t193*t208*t228 + t204*t208*t227
+            kept[7] = -t290*t305*t325 + t301*t305*t324
+            kept[8] = (t208*(angle_1_along_m*t228 - angle_1_along_n*t227 +
+                delta_angle_1_along_m*t204 - delta_angle_1_along_n*t193) +
+                t211*t224*(angle_1_along_m*t204 - angle_1_along_n*t193) -
+                t306*(angle_2_along_m*t325 - angle_2_along_n*t324 + delta_angle_2_along_m*t301 -
+                delta_angle_2_along_n*t290) - t308*t387 - t322*t387)
+            kept[9] = (delta_kept_impact*(((0 if t393 > 0.0 else 1) if t394 > 0.0 else 0) if t388
+                > 0.0 else 0) + delta_kept_rate*((((0 if t391 > 0.0 else (1 if kept_rate > 0.0
+                else -1)) if t393 > 0.0 else 0) if t394 > 0.0 else 0) if t388 > 0.0 else 0) +
+                delta_speed_beyond*(((((1 if speed_beyond > 0.0 else -1) if t391 > 0.0 else 0) if
+                t393 > 0.0 else 0) if t394 > 0.0 else 0) if t388 > 0.0 else 0))
             kept[10] = delta_beyond
             kept[11] = delta_push
         if task == TRANSPOSED:
@@ -887,9 +893,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t88 = -t86 + t87
             t89 = t87 if t88 > 0.0 else t86
             t90 = -kept_impact + t89
-            bar_speed_beyond = (kept[8] + kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t88 >
-                0.0 else 0) if t90 > 0.0 else 0) if -slow + (t89 if t90 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t88 > 0.0 else 0)
+                if t90 > 0.0 else 0) if -slow + (t89 if t90 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[10] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             t91 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
@@ -904,565 +910,573 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t100 = -m1_x*t98 - n1_x*t99
             t101 = 1/(t93*t93)
             t102 = t101*(angle_1_along_m*t92 - angle_1_along_n*t91)
-            t103 = bar_speed_beyond*side
-            t104 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
-            t105 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
-            t106 = push*side
-            t107 = t106*t94
-            t108 = -t104*t91 + t105*t92
-            t109 = t101*t106
-            t110 = t100*t109
-            t111 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
-            t112 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
-            t113 = n1_z*t91
-            t114 = m1_z*t92
-            t115 = -t111*t91 + t112*t92
-            t116 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
-            t117 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
-            t118 = m1_y*t92
-            t119 = -n1_y*t91 + t118
-            t120 = -t116*t91 + t117*t92
-            t121 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t122 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t123 = d1_y*t121 - d1_z*t122
-            t124 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t125 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t126 = d1_y*t124 - d1_z*t125
-            t127 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t128 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t129 = d1_y*t127 - d1_z*t128
-            t130 = n1_x*t123 + n1_y*t126 + n1_z*t129
-            t131 = m1_x*t123 + m1_y*t126 + m1_z*t129
-            t132 = -t130*t91 + t131*t92
-            t133 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t134 = -d1_x*t121 + d1_z*t133
-            t135 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t136 = -d1_x*t124 + d1_z*t135
-            t137 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t138 = -d1_x*t127 + d1_z*t137
-            t139 = n1_x*t134 + n1_y*t136 + n1_z*t138
-            t140 = m1_x*t134 + m1_y*t136 + m1_z*t138
-            t141 = -t139*t91 + t140*t92
-            t142 = d1_x*t122 - d1_y*t133
-            t143 = d1_x*t125 - d1_y*t135
-            t144 = d1_x*t128 - d1_y*t137
-            t145 = n1_x*t142 + n1_y*t143 + n1_z*t144
-            t146 = m1_x*t142 + m1_y*t143 + m1_z*t144
-            t147 = -t145*t91 + t146*t92
-            t148 = n1_y*t96 + t118*t94
-            t149 = -m1_y*t98 - n1_y*t99
-            t150 = t109*t149
-            t151 = -n1_x*t91 + t95
-            t152 = n1_z*t96 + t114*t94
-            t153 = -m1_z*t98 - n1_z*t99
-            t154 = t109*t153
-            t155 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t156 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t157 = t155*t155 + t156*t156
-            t158 = 1/t157
-            t159 = m2_x*t156
-            t160 = -t155*t158
-            t161 = n2_x*t160 + t158*t159
-            t162 = bar_value*ratio
-            t163 = ratio*t158
-            t164 = 2*t155
-            t165 = 2*t156
-            t166 = -m2_x*t164 - n2_x*t165
-            t167 = ratio/(t157*t157)
-            t168 = t167*(angle_2_along_m*t156 - angle_2_along_n*t155)
-            t169 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
-            t170 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
-            t171 = t106*t163
-            t172 = -t155*t169 + t156*t170
-            t173 = t106*t167
-            t174 = t166*t173
-            t175 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
-            t176 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
-            t177 = n2_z*t155
-            t178 = m2_z*t156
-            t179 = -t155*t175 + t156*t176
-            t180 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
-            t181 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
-            t182 = m2_y*t156
-            t183 = -n2_y*t155 + t182
-            t184 = -t155*t180 + t156*t181
-            t185 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-            t186 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-            t187 = d2_y*t185 - d2_z*t186
-            t188 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-            t189 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-            t190 = d2_y*t188 - d2_z*t189
-            t191 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-            t192 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-            t193 = d2_y*t191 - d2_z*t192
-            t194 = n2_x*t187 + n2_y*t190 + n2_z*t193
-            t195 = m2_x*t187 + m2_y*t190 + m2_z*t193
-            t196 = -t155*t194 + t156*t195
-            t197 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-            t198 = -d2_x*t185 + d2_z*t197
-            t199 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-            t200 = -d2_x*t188 + d2_z*t199
-            t201 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-            t202 = -d2_x*t191 + d2_z*t201
-            t203 = n2_x*t198 + n2_y*t200 + n2_z*t202
-            t204 = m2_x*t198 + m2_y*t200 + m2_z*t202
-            t205 = -t155*t203 + t156*t204
-            t206 = d2_x*t186 - d2_y*t197
-            t207 = d2_x*t189 - d2_y*t199
-            t208 = d2_x*t192 - d2_y*t201
-            t209 = n2_x*t206 + n2_y*t207 + n2_z*t208
-            t210 = m2_x*t206 + m2_y*t207 + m2_z*t208
-            t211 = -t155*t209 + t156*t210
-            t212 = n2_y*t160 + t158*t182
-            t213 = -m2_y*t164 - n2_y*t165
-            t214 = t173*t213
-            t215 = -n2_x*t155 + t159
-            t216 = n2_z*t160 + t158*t178
-            t217 = -m2_z*t164 - n2_z*t165
-            t218 = t173*t217
-            bar_angle_1_seen_1 = (kept[6]*t97 + vectors[0]*(t107*(-m1_x*t130 + n1_x*t131) +
-                t110*t132) + vectors[1]*(t107*(-m1_x*t139 + n1_x*t140) + t110*t141) +
-                vectors[2]*(t107*(-m1_x*t145 + n1_x*t146) + t110*t147) +
-                vectors[3]*(t107*(-m1_x*t104 + n1_x*t105) + t108*t110) +
-                vectors[4]*(t107*(-m1_x*t111 + n1_x*t112 - t113 + t114) + t110*t115) +
-                vectors[5]*(t107*(-m1_x*t116 + n1_x*t117 - t119) + t110*t120) + bar_value*t97 +
-                t103*(t100*t102 + t94*(angle_1_along_m*n1_x - angle_1_along_n*m1_x)))
-            bar_angle_1_seen_2 = (kept[6]*t148 + vectors[0]*(t107*(-m1_y*t130 + n1_y*t131) +
-                t132*t150) + vectors[1]*(t107*(-m1_y*t139 + n1_y*t140) + t141*t150) +
-                vectors[2]*(t107*(-m1_y*t145 + n1_y*t146) + t147*t150) +
-                vectors[3]*(t107*(-m1_y*t104 + n1_y*t105 + t113 - t114) + t108*t150) +
-                vectors[4]*(t107*(-m1_y*t111 + n1_y*t112) + t115*t150) +
-                vectors[5]*(t107*(-m1_y*t116 + n1_y*t117 + t151) + t120*t150) + bar_value*t148 +
-                t103*(t102*t149 + t94*(angle_1_along_m*n1_y - angle_1_along_n*m1_y)))
-            bar_angle_1_seen_3 = (kept[6]*t152 + vectors[0]*(t107*(-m1_z*t130 + n1_z*t131) +
-                t132*t154) + vectors[1]*(t107*(-m1_z*t139 + n1_z*t140) + t141*t154) +
-                vectors[2]*(t107*(-m1_z*t145 + n1_z*t146) + t147*t154) +
-                vectors[3]*(t107*(-m1_z*t104 + n1_z*t105 + t119) + t108*t154) +
-                vectors[4]*(t107*(-m1_z*t111 + n1_z*t112 - t151) + t115*t154) +
-                vectors[5]*(t107*(-m1_z*t116 + n1_z*t117) + t120*t154) + bar_value*t152 +
-                t103*(t102*t153 + t94*(angle_1_along_m*n1_z - angle_1_along_n*m1_z)))
-            bar_angle_1_along_n = t103*t96
-            bar_angle_1_along_m = t103*t92*t94
-            bar_angle_2_seen_1 = (kept[7]*t161 + vectors[10]*(-t171*(-m2_x*t175 + n2_x*t176 - t177
-                + t178) - t174*t179) + vectors[11]*(-t171*(-m2_x*t180 + n2_x*t181 - t183) -
-                t174*t184) + vectors[6]*(-t171*(-m2_x*t194 + n2_x*t195) - t174*t196) +
-                vectors[7]*(-t171*(-m2_x*t203 + n2_x*t204) - t174*t205) +
-                vectors[8]*(-t171*(-m2_x*t209 + n2_x*t210) - t174*t211) +
-                vectors[9]*(-t171*(-m2_x*t169 + n2_x*t170) - t172*t174) +
-                t103*(-t163*(angle_2_along_m*n2_x - angle_2_along_n*m2_x) - t166*t168) - t161*t162)
-            bar_angle_2_seen_2 = (kept[7]*t212 + vectors[10]*(-t171*(-m2_y*t175 + n2_y*t176) -
-                t179*t214) + vectors[11]*(-t171*(-m2_y*t180 + n2_y*t181 + t215) - t184*t214) +
-                vectors[6]*(-t171*(-m2_y*t194 + n2_y*t195) - t196*t214) +
-                vectors[7]*(-t171*(-m2_y*t203 + n2_y*t204) - t205*t214) +
-                vectors[8]*(-t171*(-m2_y*t209 + n2_y*t210) - t211*t214) +
-                vectors[9]*(-t171*(-m2_y*t169 + n2_y*t170 + t177 - t178) - t172*t214) +
-                t103*(-t163*(angle_2_along_m*n2_y - angle_2_along_n*m2_y) - t168*t213) - t162*t212)
-            bar_angle_2_seen_3 = (kept[7]*t216 + vectors[10]*(-t171*(-m2_z*t175 + n2_z*t176 -
-                t215) - t179*t218) + vectors[11]*(-t171*(-m2_z*t180 + n2_z*t181) - t184*t218) +
-                vectors[6]*(-t171*(-m2_z*t194 + n2_z*t195) - t196*t218) +
-                vectors[7]*(-t171*(-m2_z*t203 + n2_z*t204) - t205*t218) +
-                vectors[8]*(-t171*(-m2_z*t209 + n2_z*t210) - t211*t218) +
-                vectors[9]*(-t171*(-m2_z*t169 + n2_z*t170 + t183) - t172*t218) +
-                t103*(-t163*(angle_2_along_m*n2_z - angle_2_along_n*m2_z) - t168*t217) - t162*t216)
-            bar_angle_2_along_n = -ratio*t103*t160
-            bar_angle_2_along_m = -t103*t156*t163
-            t219 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t220 = d1_y*t219
-            t221 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t222 = -t221
-            t223 = d1_z*t222
-            t224 = t220 + t223
-            t225 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t226 = d1_y*t225
-            t227 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t228 = -t227
-            t229 = d1_z*t228
-            t230 = t226 + t229
-            t231 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t232 = d1_y*t231
-            t233 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t234 = -t233
-            t235 = d1_z*t234
-            t236 = t232 + t235
-            t237 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
-            t238 = d1_x*t219
-            t239 = d1_x*t225
-            t240 = d1_x*t231
-            t241 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
-            t242 = push*side
-            t243 = t242/(t237*t237 + t241*t241)
-            t244 = vectors[2]*t243
-            t245 = d1_x*t222
-            t246 = d1_x*t228
-            t247 = d1_x*t234
-            t248 = vectors[1]*t243
-            t249 = d1_z*t219
-            t250 = d1_y*t222
-            t251 = -t249 + t250
-            t252 = d1_z*t225
-            t253 = d1_y*t228
-            t254 = -t252 + t253
-            t255 = d1_z*t231
-            t256 = d1_y*t234
-            t257 = -t255 + t256
-            t258 = vectors[0]*t243
-            t259 = -Oma_x*d1_z + Oma_z*d1_x
-            t260 = Oma_x*d1_y - Oma_y*d1_x
-            t261 = -Omb_y*t236 + Omb_z*t230 + t219*t259 + t222*t260
-            t262 = Omb_x*t236 - Omb_z*t224 + t225*t259 + t228*t260
-            t263 = -Omb_x*t230 + Omb_y*t224 + t231*t259 + t234*t260
-            t264 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t265 = -t219
-            t266 = d1_x*t265
-            t267 = d1_z*t264 + t266
-            t268 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t269 = -t225
-            t270 = d1_x*t269
-            t271 = d1_z*t268 + t270
-            t272 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t273 = -t231
-            t274 = d1_x*t273
-            t275 = d1_z*t272 + t274
-            t276 = d1_y*t264
-            t277 = d1_y*t268
-            t278 = d1_y*t272
-            t279 = d1_y*t265
-            t280 = d1_y*t269
-            t281 = d1_y*t273
-            t282 = d1_x*t264
-            t283 = d1_z*t265 - t282
-            t284 = d1_x*t268
-            t285 = d1_z*t269 - t284
-            t286 = d1_x*t272
-            t287 = d1_z*t273 - t286
-            t288 = Oma_y*d1_z - Oma_z*d1_y
-            t289 = -Omb_y*t275 + Omb_z*t271 + t260*t264 + t265*t288
-            t290 = Omb_x*t275 - Omb_z*t267 + t260*t268 + t269*t288
-            t291 = -Omb_x*t271 + Omb_y*t267 + t260*t272 + t273*t288
-            t292 = d1_x*t221
-            t293 = -t264
-            t294 = d1_y*t293
-            t295 = t292 + t294
-            t296 = d1_x*t227
-            t297 = -t268
-            t298 = d1_y*t297
-            t299 = t296 + t298
-            t300 = d1_x*t233
-            t301 = -t272
-            t302 = d1_y*t301
-            t303 = t300 + t302
-            t304 = d1_z*t221
-            t305 = d1_z*t227
-            t306 = d1_z*t233
-            t307 = d1_z*t293
-            t308 = d1_z*t297
-            t309 = d1_z*t301
-            t310 = d1_y*t221
-            t311 = d1_x*t293
-            t312 = -t310 + t311
-            t313 = d1_y*t227
-            t314 = d1_x*t297
-            t315 = -t313 + t314
-            t316 = d1_y*t233
-            t317 = d1_x*t301
-            t318 = -t316 + t317
-            t319 = -Omb_y*t303 + Omb_z*t299 + t221*t288 + t259*t293
-            t320 = Omb_x*t303 - Omb_z*t295 + t227*t288 + t259*t297
-            t321 = -Omb_x*t299 + Omb_y*t295 + t233*t288 + t259*t301
-            t322 = t220 - t304
-            t323 = t226 - t305
-            t324 = t232 - t306
-            t325 = d1_z*t264 - t238
-            t326 = d1_z*t268 - t239
-            t327 = d1_z*t272 - t240
-            t328 = -t276 + t292
-            t329 = -t277 + t296
-            t330 = -t278 + t300
-            t331 = t255 + t286 + t316
-            t332 = d1_z*t269 + t253 + t314
-            t333 = -t229 + t280
-            t334 = d1_z*t297 - t270
-            t335 = t246 - t298
-            t336 = -Omb_y*t332 + Omb_z*t331
-            t337 = Omb_x*t332 + t231*t260 + t233*t259 + t272*t288
-            t338 = -Omb_x*t331 + t228*t259 + t260*t269 + t288*t297
-            t339 = t249 + t282 + t310
-            t340 = d1_z*t273 + t256 + t317
-            t341 = -t235 + t281
-            t342 = d1_z*t301 - t274
-            t343 = t247 - t302
-            t344 = Omb_x*t339 - Omb_z*t340
-            t345 = Omb_y*t340 + t219*t260 + t221*t259 + t264*t288
-            t346 = -Omb_y*t339 + t234*t259 + t260*t273 + t288*t301
-            t347 = t252 + t284 + t313
-            t348 = d1_z*t265 + t250 + t311
-            t349 = -t223 + t279
-            t350 = d1_z*t293 - t266
-            t351 = t245 - t294
-            t352 = -Omb_x*t348 + Omb_y*t347
-            t353 = Omb_z*t348 + t225*t260 + t227*t259 + t268*t288
-            t354 = -Omb_z*t347 + t222*t259 + t260*t265 + t288*t293
-            t355 = -t347
-            t356 = -t331
-            t357 = -t339
-            t358 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-            t359 = d2_y*t358
-            t360 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-            t361 = -t360
-            t362 = d2_z*t361
-            t363 = t359 + t362
-            t364 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-            t365 = d2_y*t364
-            t366 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-            t367 = -t366
-            t368 = d2_z*t367
-            t369 = t365 + t368
-            t370 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-            t371 = d2_y*t370
-            t372 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-            t373 = -t372
-            t374 = d2_z*t373
-            t375 = t371 + t374
-            t376 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
-            t377 = d2_x*t358
-            t378 = d2_x*t364
-            t379 = d2_x*t370
-            t380 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
-            t381 = ratio*t242/(t376*t376 + t380*t380)
-            t382 = vectors[8]*t381
-            t383 = d2_x*t361
-            t384 = d2_x*t367
-            t385 = d2_x*t373
-            t386 = vectors[7]*t381
-            t387 = d2_z*t358
-            t388 = d2_y*t361
-            t389 = -t387 + t388
-            t390 = d2_z*t364
-            t391 = d2_y*t367
-            t392 = -t390 + t391
-            t393 = d2_z*t370
-            t394 = d2_y*t373
-            t395 = -t393 + t394
-            t396 = vectors[6]*t381
-            t397 = -Omc_x*d2_z + Omc_z*d2_x
-            t398 = Omc_x*d2_y - Omc_y*d2_x
-            t399 = -Omd_y*t375 + Omd_z*t369 + t358*t397 + t361*t398
-            t400 = Omd_x*t375 - Omd_z*t363 + t364*t397 + t367*t398
-            t401 = -Omd_x*t369 + Omd_y*t363 + t370*t397 + t373*t398
-            t402 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-            t403 = -t358
-            t404 = d2_x*t403
-            t405 = d2_z*t402 + t404
-            t406 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-            t407 = -t364
-            t408 = d2_x*t407
-            t409 = d2_z*t406 + t408
-            t410 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-            t411 = -t370
-            t412 = d2_x*t411
-            t413 = d2_z*t410 + t412
-            t414 = d2_y*t402
-            t415 = d2_y*t406
-            t416 = d2_y*t410
-            t417 = d2_y*t403
-            t418 = d2_y*t407
-            t419 = d2_y*t411
-            t420 = d2_x*t402
-            t421 = d2_z*t403 - t420
-            t422 = d2_x*t406
-            t423 = d2_z*t407 - t422
-            t424 = d2_x*t410
-            t425 = d2_z*t411 - t424
-            t426 = Omc_y*d2_z - Omc_z*d2_y
-            t427 = -Omd_y*t413 + Omd_z*t409 + t398*t402 + t403*t426
-            t428 = Omd_x*t413 - Omd_z*t405 + t398*t406 + t407*t426
-            t429 = -Omd_x*t409 + Omd_y*t405 + t398*t410 + t411*t426
-            t430 = d2_x*t360
-            t431 = -t402
-            t432 = d2_y*t431
-            t433 = t430 + t432
-            t434 = d2_x*t366
-            t435 = -t406
-            t436 = d2_y*t435
-            t437 = t434 + t436
-            t438 = d2_x*t372
-            t439 = -t410
-            t440 = d2_y*t439
-            t441 = t438 + t440
-            t442 = d2_z*t360
-            t443 = d2_z*t366
-            t444 = d2_z*t372
-            t445 = d2_z*t431
-            t446 = d2_z*t435
-            t447 = d2_z*t439
-            t448 = d2_y*t360
-            t449 = d2_x*t431
-            t450 = -t448 + t449
-            t451 = d2_y*t366
-            t452 = d2_x*t435
-            t453 = -t451 + t452
-            t454 = d2_y*t372
-            t455 = d2_x*t439
-            t456 = -t454 + t455
-            t457 = -Omd_y*t441 + Omd_z*t437 + t360*t426 + t397*t431
-            t458 = Omd_x*t441 - Omd_z*t433 + t366*t426 + t397*t435
-            t459 = -Omd_x*t437 + Omd_y*t433 + t372*t426 + t397*t439
-            t460 = t359 - t442
-            t461 = t365 - t443
-            t462 = t371 - t444
-            t463 = d2_z*t402 - t377
-            t464 = d2_z*t406 - t378
-            t465 = d2_z*t410 - t379
-            t466 = -t414 + t430
-            t467 = -t415 + t434
-            t468 = -t416 + t438
-            t469 = t393 + t424 + t454
-            t470 = d2_z*t407 + t391 + t452
-            t471 = -t368 + t418
-            t472 = d2_z*t435 - t408
-            t473 = t384 - t436
-            t474 = -Omd_y*t470 + Omd_z*t469
-            t475 = Omd_x*t470 + t370*t398 + t372*t397 + t410*t426
-            t476 = -Omd_x*t469 + t367*t397 + t398*t407 + t426*t435
-            t477 = t387 + t420 + t448
-            t478 = d2_z*t411 + t394 + t455
-            t479 = -t374 + t419
-            t480 = d2_z*t439 - t412
-            t481 = t385 - t440
-            t482 = Omd_x*t477 - Omd_z*t478
-            t483 = Omd_y*t478 + t358*t398 + t360*t397 + t402*t426
-            t484 = -Omd_y*t477 + t373*t397 + t398*t411 + t426*t439
-            t485 = t390 + t422 + t451
-            t486 = d2_z*t403 + t388 + t449
-            t487 = -t362 + t417
-            t488 = d2_z*t431 - t404
-            t489 = t383 - t432
-            t490 = -Omd_x*t486 + Omd_y*t485
-            t491 = Omd_z*t486 + t364*t398 + t366*t397 + t406*t426
-            t492 = -Omd_z*t485 + t361*t397 + t398*t403 + t426*t431
-            t493 = -t485
-            t494 = -t469
-            t495 = -t477
-            t496 = touches - 0.5
-            t497 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t498 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t499 = -t497 + t498
-            t500 = t498 if t499 > 0.0 else t497
-            t501 = -kept_impact + t500
-            t502 = -slow + (t500 if t501 > 0.0 else kept_impact)
-            vectors[12] = (bar_angle_1_along_m*(m1_x*t261 + m1_y*t262 + m1_z*t263) +
-                bar_angle_1_along_n*(n1_x*t261 + n1_y*t262 + n1_z*t263) + bar_angle_1_seen_1*t224
-                + bar_angle_1_seen_2*t230 + bar_angle_1_seen_3*t236 + t244*(-t237*(n1_x*t238 +
-                n1_y*t239 + n1_z*t240) + t241*(m1_x*t238 + m1_y*t239 + m1_z*t240)) +
-                t248*(-t237*(-n1_x*t245 - n1_y*t246 - n1_z*t247) + t241*(-m1_x*t245 - m1_y*t246 -
-                m1_z*t247)) + t258*(-t237*(n1_x*t251 + n1_y*t254 + n1_z*t257) + t241*(m1_x*t251 +
-                m1_y*t254 + m1_z*t257)))
-            vectors[13] = (bar_angle_1_along_m*(m1_x*t289 + m1_y*t290 + m1_z*t291) +
-                bar_angle_1_along_n*(n1_x*t289 + n1_y*t290 + n1_z*t291) + bar_angle_1_seen_1*t267
-                + bar_angle_1_seen_2*t271 + bar_angle_1_seen_3*t275 + t244*(-t237*(-n1_x*t279 -
-                n1_y*t280 - n1_z*t281) + t241*(-m1_x*t279 - m1_y*t280 - m1_z*t281)) +
-                t248*(-t237*(n1_x*t283 + n1_y*t285 + n1_z*t287) + t241*(m1_x*t283 + m1_y*t285 +
-                m1_z*t287)) + t258*(-t237*(n1_x*t276 + n1_y*t277 + n1_z*t278) + t241*(m1_x*t276 +
-                m1_y*t277 + m1_z*t278)))
-            vectors[14] = (bar_angle_1_along_m*(m1_x*t319 + m1_y*t320 + m1_z*t321) +
-                bar_angle_1_along_n*(n1_x*t319 + n1_y*t320 + n1_z*t321) + bar_angle_1_seen_1*t295
-                + bar_angle_1_seen_2*t299 + bar_angle_1_seen_3*t303 + t244*(-t237*(n1_x*t312 +
-                n1_y*t315 + n1_z*t318) + t241*(m1_x*t312 + m1_y*t315 + m1_z*t318)) +
-                t248*(-t237*(n1_x*t304 + n1_y*t305 + n1_z*t306) + t241*(m1_x*t304 + m1_y*t305 +
-                m1_z*t306)) + t258*(-t237*(-n1_x*t307 - n1_y*t308 - n1_z*t309) + t241*(-m1_x*t307
-                - m1_y*t308 - m1_z*t309)))
-            vectors[24] = (bar_angle_1_along_m*(m1_x*t322 + m1_y*t323 + m1_z*t324) +
-                bar_angle_1_along_n*(n1_x*t322 + n1_y*t323 + n1_z*t324))
-            vectors[25] = (bar_angle_1_along_m*(m1_x*t325 + m1_y*t326 + m1_z*t327) +
-                bar_angle_1_along_n*(n1_x*t325 + n1_y*t326 + n1_z*t327))
-            vectors[26] = (bar_angle_1_along_m*(m1_x*t328 + m1_y*t329 + m1_z*t330) +
-                bar_angle_1_along_n*(n1_x*t328 + n1_y*t329 + n1_z*t330))
+            t103 = t100*t102 + t94*(angle_1_along_m*n1_x - angle_1_along_n*m1_x)
+            t104 = bar_speed_beyond*side
+            t105 = -angle_1_seen_2*n1_z + angle_1_seen_3*n1_y
+            t106 = -angle_1_seen_2*m1_z + angle_1_seen_3*m1_y
+            t107 = push*side
+            t108 = t107*t94
+            t109 = -t105*t91 + t106*t92
+            t110 = t101*t107
+            t111 = t100*t110
+            t112 = angle_1_seen_1*n1_z - angle_1_seen_3*n1_x
+            t113 = angle_1_seen_1*m1_z - angle_1_seen_3*m1_x
+            t114 = n1_z*t91
+            t115 = m1_z*t92
+            t116 = -t112*t91 + t113*t92
+            t117 = -angle_1_seen_1*n1_y + angle_1_seen_2*n1_x
+            t118 = -angle_1_seen_1*m1_y + angle_1_seen_2*m1_x
+            t119 = m1_y*t92
+            t120 = -n1_y*t91 + t119
+            t121 = -t117*t91 + t118*t92
+            t122 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t123 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t124 = d1_y*t122 - d1_z*t123
+            t125 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t126 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t127 = d1_y*t125 - d1_z*t126
+            t128 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t129 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t130 = d1_y*t128 - d1_z*t129
+            t131 = n1_x*t124 + n1_y*t127 + n1_z*t130
+            t132 = m1_x*t124 + m1_y*t127 + m1_z*t130
+            t133 = -t131*t91 + t132*t92
+            t134 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t135 = -d1_x*t122 + d1_z*t134
+            t136 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t137 = -d1_x*t125 + d1_z*t136
+            t138 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t139 = -d1_x*t128 + d1_z*t138
+            t140 = n1_x*t135 + n1_y*t137 + n1_z*t139
+            t141 = m1_x*t135 + m1_y*t137 + m1_z*t139
+            t142 = -t140*t91 + t141*t92
+            t143 = d1_x*t123 - d1_y*t134
+            t144 = d1_x*t126 - d1_y*t136
+            t145 = d1_x*t129 - d1_y*t138
+            t146 = n1_x*t143 + n1_y*t144 + n1_z*t145
+            t147 = m1_x*t143 + m1_y*t144 + m1_z*t145
+            t148 = -t146*t91 + t147*t92
+            t149 = n1_y*t96 + t119*t94
+            t150 = -m1_y*t98 - n1_y*t99
+            t151 = t102*t150 + t94*(angle_1_along_m*n1_y - angle_1_along_n*m1_y)
+            t152 = t110*t150
+            t153 = -n1_x*t91 + t95
+            t154 = n1_z*t96 + t115*t94
+            t155 = -m1_z*t98 - n1_z*t99
+            t156 = t102*t155 + t94*(angle_1_along_m*n1_z - angle_1_along_n*m1_z)
+            t157 = t110*t155
+            t158 = t92*t94
+            t159 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t160 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t161 = t159*t159 + t160*t160
+            t162 = 1/t161
+            t163 = m2_x*t160
+            t164 = -t159*t162
+            t165 = n2_x*t164 + t162*t163
+            t166 = bar_value*ratio
+            t167 = ratio*t162
+            t168 = 2*t159
+            t169 = 2*t160
+            t170 = -m2_x*t168 - n2_x*t169
+            t171 = ratio/(t161*t161)
+            t172 = t171*(angle_2_along_m*t160 - angle_2_along_n*t159)
+            t173 = -t167*(angle_2_along_m*n2_x - angle_2_along_n*m2_x) - t170*t172
+            t174 = -angle_2_seen_2*n2_z + angle_2_seen_3*n2_y
+            t175 = -angle_2_seen_2*m2_z + angle_2_seen_3*m2_y
+            t176 = t107*t167
+            t177 = -t159*t174 + t160*t175
+            t178 = t107*t171
+            t179 = t170*t178
+            t180 = angle_2_seen_1*n2_z - angle_2_seen_3*n2_x
+            t181 = angle_2_seen_1*m2_z - angle_2_seen_3*m2_x
+            t182 = n2_z*t159
+            t183 = m2_z*t160
+            t184 = -t159*t180 + t160*t181
+            t185 = -angle_2_seen_1*n2_y + angle_2_seen_2*n2_x
+            t186 = -angle_2_seen_1*m2_y + angle_2_seen_2*m2_x
+            t187 = m2_y*t160
+            t188 = -n2_y*t159 + t187
+            t189 = -t159*t185 + t160*t186
+            t190 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+            t191 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+            t192 = d2_y*t190 - d2_z*t191
+            t193 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+            t194 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+            t195 = d2_y*t193 - d2_z*t194
+            t196 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+            t197 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+            t198 = d2_y*t196 - d2_z*t197
+            t199 = n2_x*t192 + n2_y*t195 + n2_z*t198
+            t200 = m2_x*t192 + m2_y*t195 + m2_z*t198
+            t201 = -t159*t199 + t160*t200
+            t202 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+            t203 = -d2_x*t190 + d2_z*t202
+            t204 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+            t205 = -d2_x*t193 + d2_z*t204
+            t206 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+            t207 = -d2_x*t196 + d2_z*t206
+            t208 = n2_x*t203 + n2_y*t205 + n2_z*t207
+            t209 = m2_x*t203 + m2_y*t205 + m2_z*t207
+            t210 = -t159*t208 + t160*t209
+            t211 = d2_x*t191 - d2_y*t202
+            t212 = d2_x*t194 - d2_y*t204
+            t213 = d2_x*t197 - d2_y*t206
+            t214 = n2_x*t211 + n2_y*t212 + n2_z*t213
+            t215 = m2_x*t211 + m2_y*t212 + m2_z*t213
+            t216 = -t159*t214 + t160*t215
+            t217 = n2_y*t164 + t162*t187
+            t218 = -m2_y*t168 - n2_y*t169
+            t219 = -t167*(angle_2_along_m*n2_y - angle_2_along_n*m2_y) - t172*t218
+            t220 = t178*t218
+            t221 = -n2_x*t159 + t163
+            t222 = n2_z*t164 + t162*t183
+            t223 = -m2_z*t168 - n2_z*t169
+            t224 = -t167*(angle_2_along_m*n2_z - angle_2_along_n*m2_z) - t172*t223
+            t225 = t178*t223
+            t226 = ratio*t164
+            t227 = t160*t167
+            bar_angle_1_seen_1 = (kept[6]*t97 + kept[8]*t103 + vectors[0]*(t108*(-m1_x*t131 +
+                n1_x*t132) + t111*t133) + vectors[1]*(t108*(-m1_x*t140 + n1_x*t141) + t111*t142) +
+                vectors[2]*(t108*(-m1_x*t146 + n1_x*t147) + t111*t148) +
+                vectors[3]*(t108*(-m1_x*t105 + n1_x*t106) + t109*t111) +
+                vectors[4]*(t108*(-m1_x*t112 + n1_x*t113 - t114 + t115) + t111*t116) +
+                vectors[5]*(t108*(-m1_x*t117 + n1_x*t118 - t120) + t111*t121) + bar_value*t97 +
+                t103*t104)
+            bar_angle_1_seen_2 = (kept[6]*t149 + kept[8]*t151 + vectors[0]*(t108*(-m1_y*t131 +
+                n1_y*t132) + t133*t152) + vectors[1]*(t108*(-m1_y*t140 + n1_y*t141) + t142*t152) +
+                vectors[2]*(t108*(-m1_y*t146 + n1_y*t147) + t148*t152) +
+                vectors[3]*(t108*(-m1_y*t105 + n1_y*t106 + t114 - t115) + t109*t152) +
+                vectors[4]*(t108*(-m1_y*t112 + n1_y*t113) + t116*t152) +
+                vectors[5]*(t108*(-m1_y*t117 + n1_y*t118 + t153) + t121*t152) + bar_value*t149 +
+                t104*t151)
+            bar_angle_1_seen_3 = (kept[6]*t154 + kept[8]*t156 + vectors[0]*(t108*(-m1_z*t131 +
+                n1_z*t132) + t133*t157) + vectors[1]*(t108*(-m1_z*t140 + n1_z*t141) + t142*t157) +
+                vectors[2]*(t108*(-m1_z*t146 + n1_z*t147) + t148*t157) +
+                vectors[3]*(t108*(-m1_z*t105 + n1_z*t106 + t120) + t109*t157) +
+                vectors[4]*(t108*(-m1_z*t112 + n1_z*t113 - t153) + t116*t157) +
+                vectors[5]*(t108*(-m1_z*t117 + n1_z*t118) + t121*t157) + bar_value*t154 +
+                t104*t156)
+            bar_angle_1_along_n = kept[8]*t96 + t104*t96
+            bar_angle_1_along_m = kept[8]*t158 + t104*t158
+            bar_angle_2_seen_1 = (kept[7]*t165 + kept[8]*t173 + vectors[10]*(-t176*(-m2_x*t180 +
+                n2_x*t181 - t182 + t183) - t179*t184) + vectors[11]*(-t176*(-m2_x*t185 + n2_x*t186
+                - t188) - t179*t189) + vectors[6]*(-t176*(-m2_x*t199 + n2_x*t200) - t179*t201) +
+                vectors[7]*(-t176*(-m2_x*t208 + n2_x*t209) - t179*t210) +
+                vectors[8]*(-t176*(-m2_x*t214 + n2_x*t215) - t179*t216) +
+                vectors[9]*(-t176*(-m2_x*t174 + n2_x*t175) - t177*t179) + t104*t173 - t165*t166)
+            bar_angle_2_seen_2 = (kept[7]*t217 + kept[8]*t219 + vectors[10]*(-t176*(-m2_y*t180 +
+                n2_y*t181) - t184*t220) + vectors[11]*(-t176*(-m2_y*t185 + n2_y*t186 + t221) -
+                t189*t220) + vectors[6]*(-t176*(-m2_y*t199 + n2_y*t200) - t201*t220) +
+                vectors[7]*(-t176*(-m2_y*t208 + n2_y*t209) - t210*t220) +
+                vectors[8]*(-t176*(-m2_y*t214 + n2_y*t215) - t216*t220) +
+                vectors[9]*(-t176*(-m2_y*t174 + n2_y*t175 + t182 - t183) - t177*t220) + t104*t219
+                - t166*t217)
+            bar_angle_2_seen_3 = (kept[7]*t222 + kept[8]*t224 + vectors[10]*(-t176*(-m2_z*t180 +
+                n2_z*t181 - t221) - t184*t225) + vectors[11]*(-t176*(-m2_z*t185 + n2_z*t186) -
+                t189*t225) + vectors[6]*(-t176*(-m2_z*t199 + n2_z*t200) - t201*t225) +
+                vectors[7]*(-t176*(-m2_z*t208 + n2_z*t209) - t210*t225) +
+                vectors[8]*(-t176*(-m2_z*t214 + n2_z*t215) - t216*t225) +
+                vectors[9]*(-t176*(-m2_z*t174 + n2_z*t175 + t188) - t177*t225) + t104*t224 -
+                t166*t222)
+            bar_angle_2_along_n = -kept[8]*t226 - t104*t226
+            bar_angle_2_along_m = -kept[8]*t227 - t104*t227
+            t228 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t229 = d1_y*t228
+            t230 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t231 = -t230
+            t232 = d1_z*t231
+            t233 = t229 + t232
+            t234 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t235 = d1_y*t234
+            t236 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t237 = -t236
+            t238 = d1_z*t237
+            t239 = t235 + t238
+            t240 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t241 = d1_y*t240
+            t242 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t243 = -t242
+            t244 = d1_z*t243
+            t245 = t241 + t244
+            t246 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
+            t247 = d1_x*t228
+            t248 = d1_x*t234
+            t249 = d1_x*t240
+            t250 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z
+            t251 = push*side
+            t252 = t251/(t246*t246 + t250*t250)
+            t253 = vectors[2]*t252
+            t254 = d1_x*t231
+            t255 = d1_x*t237
+            t256 = d1_x*t243
+            t257 = vectors[1]*t252
+            t258 = d1_z*t228
+            t259 = d1_y*t231
+            t260 = -t258 + t259
+            t261 = d1_z*t234
+            t262 = d1_y*t237
+            t263 = -t261 + t262
+            t264 = d1_z*t240
+            t265 = d1_y*t243
+            t266 = -t264 + t265
+            t267 = vectors[0]*t252
+            t268 = -Oma_x*d1_z + Oma_z*d1_x
+            t269 = Oma_x*d1_y - Oma_y*d1_x
+            t270 = -Omb_y*t245 + Omb_z*t239 + t228*t268 + t231*t269
+            t271 = Omb_x*t245 - Omb_z*t233 + t234*t268 + t237*t269
+            t272 = -Omb_x*t239 + Omb_y*t233 + t240*t268 + t243*t269
+            t273 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t274 = -t228
+            t275 = d1_x*t274
+            t276 = d1_z*t273 + t275
+            t277 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t278 = -t234
+            t279 = d1_x*t278
+            t280 = d1_z*t277 + t279
+            t281 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t282 = -t240
+            t283 = d1_x*t282
+            t284 = d1_z*t281 + t283
+            t285 = d1_y*t273
+            t286 = d1_y*t277
+            t287 = d1_y*t281
+            t288 = d1_y*t274
+            t289 = d1_y*t278
+            t290 = d1_y*t282
+            t291 = d1_x*t273
+            t292 = d1_z*t274 - t291
+            t293 = d1_x*t277
+            t294 = d1_z*t278 - t293
+            t295 = d1_x*t281
+            t296 = d1_z*t282 - t295
+            t297 = Oma_y*d1_z - Oma_z*d1_y
+            t298 = -Omb_y*t284 + Omb_z*t280 + t269*t273 + t274*t297
+            t299 = Omb_x*t284 - Omb_z*t276 + t269*t277 + t278*t297
+            t300 = -Omb_x*t280 + Omb_y*t276 + t269*t281 + t282*t297
+            t301 = d1_x*t230
+            t302 = -t273
+            t303 = d1_y*t302
+            t304 = t301 + t303
+            t305 = d1_x*t236
+            t306 = -t277
+            t307 = d1_y*t306
+            t308 = t305 + t307
+            t309 = d1_x*t242
+            t310 = -t281
+            t311 = d1_y*t310
+            t312 = t309 + t311
+            t313 = d1_z*t230
+            t314 = d1_z*t236
+            t315 = d1_z*t242
+            t316 = d1_z*t302
+            t317 = d1_z*t306
+            t318 = d1_z*t310
+            t319 = d1_y*t230
+            t320 = d1_x*t302
+            t321 = -t319 + t320
+            t322 = d1_y*t236
+            t323 = d1_x*t306
+            t324 = -t322 + t323
+            t325 = d1_y*t242
+            t326 = d1_x*t310
+            t327 = -t325 + t326
+            t328 = -Omb_y*t312 + Omb_z*t308 + t230*t297 + t268*t302
+            t329 = Omb_x*t312 - Omb_z*t304 + t236*t297 + t268*t306
+            t330 = -Omb_x*t308 + Omb_y*t304 + t242*t297 + t268*t310
+            t331 = t229 - t313
+            t332 = t235 - t314
+            t333 = t241 - t315
+            t334 = d1_z*t273 - t247
+            t335 = d1_z*t277 - t248
+            t336 = d1_z*t281 - t249
+            t337 = -t285 + t301
+            t338 = -t286 + t305
+            t339 = -t287 + t309
+            t340 = t264 + t295 + t325
+            t341 = d1_z*t278 + t262 + t323
+            t342 = -t238 + t289
+            t343 = d1_z*t306 - t279
+            t344 = t255 - t307
+            t345 = -Omb_y*t341 + Omb_z*t340
+            t346 = Omb_x*t341 + t240*t269 + t242*t268 + t281*t297
+            t347 = -Omb_x*t340 + t237*t268 + t269*t278 + t297*t306
+            t348 = t258 + t291 + t319
+            t349 = d1_z*t282 + t265 + t326
+            t350 = -t244 + t290
+            t351 = d1_z*t310 - t283
+            t352 = t256 - t311
+            t353 = Omb_x*t348 - Omb_z*t349
+            t354 = Omb_y*t349 + t228*t269 + t230*t268 + t273*t297
+            t355 = -Omb_y*t348 + t243*t268 + t269*t282 + t297*t310
+            t356 = t261 + t293 + t322
+            t357 = d1_z*t274 + t259 + t320
+            t358 = -t232 + t288
+            t359 = d1_z*t302 - t275
+            t360 = t254 - t303
+            t361 = -Omb_x*t357 + Omb_y*t356
+            t362 = Omb_z*t357 + t234*t269 + t236*t268 + t277*t297
+            t363 = -Omb_z*t356 + t231*t268 + t269*t274 + t297*t302
+            t364 = -t356
+            t365 = -t340
+            t366 = -t348
+            t367 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+            t368 = d2_y*t367
+            t369 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+            t370 = -t369
+            t371 = d2_z*t370
+            t372 = t368 + t371
+            t373 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+            t374 = d2_y*t373
+            t375 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+            t376 = -t375
+            t377 = d2_z*t376
+            t378 = t374 + t377
+            t379 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+            t380 = d2_y*t379
+            t381 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+            t382 = -t381
+            t383 = d2_z*t382
+            t384 = t380 + t383
+            t385 = angle_2_seen_1*m2_x + angle_2_seen_2*m2_y + angle_2_seen_3*m2_z
+            t386 = d2_x*t367
+            t387 = d2_x*t373
+            t388 = d2_x*t379
+            t389 = angle_2_seen_1*n2_x + angle_2_seen_2*n2_y + angle_2_seen_3*n2_z
+            t390 = ratio*t251/(t385*t385 + t389*t389)
+            t391 = vectors[8]*t390
+            t392 = d2_x*t370
+            t393 = d2_x*t376
+            t394 = d2_x*t382
+            t395 = vectors[7]*t390
+            t396 = d2_z*t367
+            t397 = d2_y*t370
+            t398 = -t396 + t397
+            t399 = d2_z*t373
+            t400 = d2_y*t376
+            t401 = -t399 + t400
+            t402 = d2_z*t379
+            t403 = d2_y*t382
+            t404 = -t402 + t403
+            t405 = vectors[6]*t390
+            t406 = -Omc_x*d2_z + Omc_z*d2_x
+            t407 = Omc_x*d2_y - Omc_y*d2_x
+            t408 = -Omd_y*t384 + Omd_z*t378 + t367*t406 + t370*t407
+            t409 = Omd_x*t384 - Omd_z*t372 + t373*t406 + t376*t407
+            t410 = -Omd_x*t378 + Omd_y*t372 + t379*t406 + t382*t407
+            t411 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+            t412 = -t367
+            t413 = d2_x*t412
+            t414 = d2_z*t411 + t413
+            t415 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+            t416 = -t373
+            t417 = d2_x*t416
+            t418 = d2_z*t415 + t417
+            t419 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+            t420 = -t379
+            t421 = d2_x*t420
+            t422 = d2_z*t419 + t421
+            t423 = d2_y*t411
+            t424 = d2_y*t415
+            t425 = d2_y*t419
+            t426 = d2_y*t412
+            t427 = d2_y*t416
+            t428 = d2_y*t420
+            t429 = d2_x*t411
+            t430 = d2_z*t412 - t429
+            t431 = d2_x*t415
+            t432 = d2_z*t416 - t431
+            t433 = d2_x*t419
+            t434 = d2_z*t420 - t433
+            t435 = Omc_y*d2_z - Omc_z*d2_y
+            t436 = -Omd_y*t422 + Omd_z*t418 + t407*t411 + t412*t435
+            t437 = Omd_x*t422 - Omd_z*t414 + t407*t415 + t416*t435
+            t438 = -Omd_x*t418 + Omd_y*t414 + t407*t419 + t420*t435
+            t439 = d2_x*t369
+            t440 = -t411
+            t441 = d2_y*t440
+            t442 = t439 + t441
+            t443 = d2_x*t375
+            t444 = -t415
+            t445 = d2_y*t444
+            t446 = t443 + t445
+            t447 = d2_x*t381
+            t448 = -t419
+            t449 = d2_y*t448
+            t450 = t447 + t449
+            t451 = d2_z*t369
+            t452 = d2_z*t375
+            t453 = d2_z*t381
+            t454 = d2_z*t440
+            t455 = d2_z*t444
+            t456 = d2_z*t448
+            t457 = d2_y*t369
+            t458 = d2_x*t440
+            t459 = -t457 + t458
+            t460 = d2_y*t375
+            t461 = d2_x*t444
+            t462 = -t460 + t461
+            t463 = d2_y*t381
+            t464 = d2_x*t448
+            t465 = -t463 + t464
+            t466 = -Omd_y*t450 + Omd_z*t446 + t369*t435 + t406*t440
+            t467 = Omd_x*t450 - Omd_z*t442 + t375*t435 + t406*t444
+            t468 = -Omd_x*t446 + Omd_y*t442 + t381*t435 + t406*t448
+            t469 = t368 - t451
+            t470 = t374 - t452
+            t471 = t380 - t453
+            t472 = d2_z*t411 - t386
+            t473 = d2_z*t415 - t387
+            t474 = d2_z*t419 - t388
+            t475 = -t423 + t439
+            t476 = -t424 + t443
+            t477 = -t425 + t447
+            t478 = t402 + t433 + t463
+            t479 = d2_z*t416 + t400 + t461
+            t480 = -t377 + t427
+            t481 = d2_z*t444 - t417
+            t482 = t393 - t445
+            t483 = -Omd_y*t479 + Omd_z*t478
+            t484 = Omd_x*t479 + t379*t407 + t381*t406 + t419*t435
+            t485 = -Omd_x*t478 + t376*t406 + t407*t416 + t435*t444
+            t486 = t396 + t429 + t457
+            t487 = d2_z*t420 + t403 + t464
+            t488 = -t383 + t428
+            t489 = d2_z*t448 - t421
+            t490 = t394 - t449
+            t491 = Omd_x*t486 - Omd_z*t487
+            t492 = Omd_y*t487 + t367*t407 + t369*t406 + t411*t435
+            t493 = -Omd_y*t486 + t382*t406 + t407*t420 + t435*t448
+            t494 = t399 + t431 + t460
+            t495 = d2_z*t412 + t397 + t458
+            t496 = -t371 + t426
+            t497 = d2_z*t440 - t413
+            t498 = t392 - t441
+            t499 = -Omd_x*t495 + Omd_y*t494
+            t500 = Omd_z*t495 + t373*t407 + t375*t406 + t415*t435
+            t501 = -Omd_z*t494 + t370*t406 + t407*t412 + t435*t440
+            t502 = -t494
+            t503 = -t478
+            t504 = -t486
+            t505 = touches - 0.5
+            t506 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t507 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t508 = -t506 + t507
+            t509 = t507 if t508 > 0.0 else t506
+            t510 = -kept_impact + t509
+            t511 = -slow + (t509 if t510 > 0.0 else kept_impact)
+            vectors[12] = (bar_angle_1_along_m*(m1_x*t270 + m1_y*t271 + m1_z*t272) +
+                bar_angle_1_along_n*(n1_x*t270 + n1_y*t271 + n1_z*t272) + bar_angle_1_seen_1*t233
+                + bar_angle_1_seen_2*t239 + bar_angle_1_seen_3*t245 + t253*(-t246*(n1_x*t247 +
+                n1_y*t248 + n1_z*t249) + t250*(m1_x*t247 + m1_y*t248 + m1_z*t249)) +
+                t257*(-t246*(-n1_x*t254 - n1_y*t255 - n1_z*t256) + t250*(-m1_x*t254 - m1_y*t255 -
+                m1_z*t256)) + t267*(-t246*(n1_x*t260 + n1_y*t263 + n1_z*t266) + t250*(m1_x*t260 +
+                m1_y*t263 + m1_z*t266)))
+            vectors[13] = (bar_angle_1_along_m*(m1_x*t298 + m1_y*t299 + m1_z*t300) +
+                bar_angle_1_along_n*(n1_x*t298 + n1_y*t299 + n1_z*t300) + bar_angle_1_seen_1*t276
+                + bar_angle_1_seen_2*t280 + bar_angle_1_seen_3*t284 + t253*(-t246*(-n1_x*t288 -
+                n1_y*t289 - n1_z*t290) + t250*(-m1_x*t288 - m1_y*t289 - m1_z*t290)) +
+                t257*(-t246*(n1_x*t292 + n1_y*t294 + n1_z*t296) + t250*(m1_x*t292 + m1_y*t294 +
+                m1_z*t296)) + t267*(-t246*(n1_x*t285 + n1_y*t286 + n1_z*t287) + t250*(m1_x*t285 +
+                m1_y*t286 + m1_z*t287)))
+            vectors[14] = (bar_angle_1_along_m*(m1_x*t328 + m1_y*t329 + m1_z*t330) +
+                bar_angle_1_along_n*(n1_x*t328 + n1_y*t329 + n1_z*t330) + bar_angle_1_seen_1*t304
+                + bar_angle_1_seen_2*t308 + bar_angle_1_seen_3*t312 + t253*(-t246*(n1_x*t321 +
+                n1_y*t324 + n1_z*t327) + t250*(m1_x*t321 + m1_y*t324 + m1_z*t327)) +
+                t257*(-t246*(n1_x*t313 + n1_y*t314 + n1_z*t315) + t250*(m1_x*t313 + m1_y*t314 +
+                m1_z*t315)) + t267*(-t246*(-n1_x*t316 - n1_y*t317 - n1_z*t318) + t250*(-m1_x*t316
+                - m1_y*t317 - m1_z*t318)))
+            vectors[24] = (bar_angle_1_along_m*(m1_x*t331 + m1_y*t332 + m1_z*t333) +
+                bar_angle_1_along_n*(n1_x*t331 + n1_y*t332 + n1_z*t333))
+            vectors[25] = (bar_angle_1_along_m*(m1_x*t334 + m1_y*t335 + m1_z*t336) +
+                bar_angle_1_along_n*(n1_x*t334 + n1_y*t335 + n1_z*t336))
+            vectors[26] = (bar_angle_1_along_m*(m1_x*t337 + m1_y*t338 + m1_z*t339) +
+                bar_angle_1_along_n*(n1_x*t337 + n1_y*t338 + n1_z*t339))
             kept[12] = 0.0
             kept[13] = 0.0
             kept[14] = 0.0
-            vectors[15] = (bar_angle_1_along_m*(m1_x*t336 + m1_y*t337 + m1_z*t338) +
-                bar_angle_1_along_n*(n1_x*t336 + n1_y*t337 + n1_z*t338) + bar_angle_1_seen_2*t331
-                + bar_angle_1_seen_3*t332 + t244*(-t237*(n1_y*t330 + n1_z*t335) + t241*(m1_y*t330
-                + m1_z*t335)) + t248*(-t237*(n1_y*t327 + n1_z*t334) + t241*(m1_y*t327 +
-                m1_z*t334)) + t258*(-t237*(n1_y*t324 + n1_z*t333) + t241*(m1_y*t324 + m1_z*t333)))
-            vectors[16] = (bar_angle_1_along_m*(m1_x*t346 + m1_y*t344 + m1_z*t345) +
-                bar_angle_1_along_n*(n1_x*t346 + n1_y*t344 + n1_z*t345) + bar_angle_1_seen_1*t340
-                + bar_angle_1_seen_3*t339 + t244*(-t237*(n1_x*t343 + n1_z*t328) + t241*(m1_x*t343
-                + m1_z*t328)) + t248*(-t237*(n1_x*t342 + n1_z*t325) + t241*(m1_x*t342 +
-                m1_z*t325)) + t258*(-t237*(n1_x*t341 + n1_z*t322) + t241*(m1_x*t341 + m1_z*t322)))
-            vectors[17] = (bar_angle_1_along_m*(m1_x*t353 + m1_y*t354 + m1_z*t352) +
-                bar_angle_1_along_n*(n1_x*t353 + n1_y*t354 + n1_z*t352) + bar_angle_1_seen_1*t347
-                + bar_angle_1_seen_2*t348 + t244*(-t237*(n1_x*t329 + n1_y*t351) + t241*(m1_x*t329
-                + m1_y*t351)) + t248*(-t237*(n1_x*t326 + n1_y*t350) + t241*(m1_x*t326 +
-                m1_y*t350)) + t258*(-t237*(n1_x*t323 + n1_y*t349) + t241*(m1_x*t323 + m1_y*t349)))
-            vectors[27] = (bar_angle_1_along_m*(m1_y*t331 + m1_z*t355) +
-                bar_angle_1_along_n*(n1_y*t331 + n1_z*t355))
-            vectors[28] = (bar_angle_1_along_m*(m1_x*t356 + m1_z*t339) +
-                bar_angle_1_along_n*(n1_x*t356 + n1_z*t339))
-            vectors[29] = (bar_angle_1_along_m*(m1_x*t347 + m1_y*t357) +
-                bar_angle_1_along_n*(n1_x*t347 + n1_y*t357))
+            vectors[15] = (bar_angle_1_along_m*(m1_x*t345 + m1_y*t346 + m1_z*t347) +
+                bar_angle_1_along_n*(n1_x*t345 + n1_y*t346 + n1_z*t347) + bar_angle_1_seen_2*t340
+                + bar_angle_1_seen_3*t341 + t253*(-t246*(n1_y*t339 + n1_z*t344) + t250*(m1_y*t339
+                + m1_z*t344)) + t257*(-t246*(n1_y*t336 + n1_z*t343) + t250*(m1_y*t336 +
+                m1_z*t343)) + t267*(-t246*(n1_y*t333 + n1_z*t342) + t250*(m1_y*t333 + m1_z*t342)))
+            vectors[16] = (bar_angle_1_along_m*(m1_x*t355 + m1_y*t353 + m1_z*t354) +
+                bar_angle_1_along_n*(n1_x*t355 + n1_y*t353 + n1_z*t354) + bar_angle_1_seen_1*t349
+                + bar_angle_1_seen_3*t348 + t253*(-t246*(n1_x*t352 + n1_z*t337) + t250*(m1_x*t352
+                + m1_z*t337)) + t257*(-t246*(n1_x*t351 + n1_z*t334) + t250*(m1_x*t351 +
+                m1_z*t334)) + t267*(-t246*(n1_x*t350 + n1_z*t331) + t250*(m1_x*t350 + m1_z*t331)))
+            vectors[17] = (bar_angle_1_along_m*(m1_x*t362 + m1_y*t363 + m1_z*t361) +
+                bar_angle_1_along_n*(n1_x*t362 + n1_y*t363 + n1_z*t361) + bar_angle_1_seen_1*t356
+                + bar_angle_1_seen_2*t357 + t253*(-t246*(n1_x*t338 + n1_y*t360) + t250*(m1_x*t338
+                + m1_y*t360)) + t257*(-t246*(n1_x*t335 + n1_y*t359) + t250*(m1_x*t335 +
+                m1_y*t359)) + t267*(-t246*(n1_x*t332 + n1_y*t358) + t250*(m1_x*t332 + m1_y*t358)))
+            vectors[27] = (bar_angle_1_along_m*(m1_y*t340 + m1_z*t364) +
+                bar_angle_1_along_n*(n1_y*t340 + n1_z*t364))
+            vectors[28] = (bar_angle_1_along_m*(m1_x*t365 + m1_z*t348) +
+                bar_angle_1_along_n*(n1_x*t365 + n1_z*t348))
+            vectors[29] = (bar_angle_1_along_m*(m1_x*t356 + m1_y*t366) +
+                bar_angle_1_along_n*(n1_x*t356 + n1_y*t366))
             kept[15] = 0.0
             kept[16] = 0.0
             kept[17] = 0.0
-            vectors[18] = (bar_angle_2_along_m*(m2_x*t399 + m2_y*t400 + m2_z*t401) +
-                bar_angle_2_along_n*(n2_x*t399 + n2_y*t400 + n2_z*t401) + bar_angle_2_seen_1*t363
-                + bar_angle_2_seen_2*t369 + bar_angle_2_seen_3*t375 - t382*(-t376*(n2_x*t377 +
-                n2_y*t378 + n2_z*t379) + t380*(m2_x*t377 + m2_y*t378 + m2_z*t379)) -
-                t386*(-t376*(-n2_x*t383 - n2_y*t384 - n2_z*t385) + t380*(-m2_x*t383 - m2_y*t384 -
-                m2_z*t385)) - t396*(-t376*(n2_x*t389 + n2_y*t392 + n2_z*t395) + t380*(m2_x*t389 +
-                m2_y*t392 + m2_z*t395)))
-            vectors[19] = (bar_angle_2_along_m*(m2_x*t427 + m2_y*t428 + m2_z*t429) +
-                bar_angle_2_along_n*(n2_x*t427 + n2_y*t428 + n2_z*t429) + bar_angle_2_seen_1*t405
-                + bar_angle_2_seen_2*t409 + bar_angle_2_seen_3*t413 - t382*(-t376*(-n2_x*t417 -
-                n2_y*t418 - n2_z*t419) + t380*(-m2_x*t417 - m2_y*t418 - m2_z*t419)) -
-                t386*(-t376*(n2_x*t421 + n2_y*t423 + n2_z*t425) + t380*(m2_x*t421 + m2_y*t423 +
-                m2_z*t425)) - t396*(-t376*(n2_x*t414 + n2_y*t415 + n2_z*t416) + t380*(m2_x*t414 +
-                m2_y*t415 + m2_z*t416)))
-            vectors[20] = (bar_angle_2_along_m*(m2_x*t457 + m2_y*t458 + m2_z*t459) +
-                bar_angle_2_along_n*(n2_x*t457 + n2_y*t458 + n2_z*t459) + bar_angle_2_seen_1*t433
-                + bar_angle_2_seen_2*t437 + bar_angle_2_seen_3*t441 - t382*(-t376*(n2_x*t450 +
-                n2_y*t453 + n2_z*t456) + t380*(m2_x*t450 + m2_y*t453 + m2_z*t456)) -
-                t386*(-t376*(n2_x*t442 + n2_y*t443 + n2_z*t444) + t380*(m2_x*t442 + m2_y*t443 +
-                m2_z*t444)) - t396*(-t376*(-n2_x*t445 - n2_y*t446 - n2_z*t447) + t380*(-m2_x*t445
-                - m2_y*t446 - m2_z*t447)))
-            vectors[30] = (bar_angle_2_along_m*(m2_x*t460 + m2_y*t461 + m2_z*t462) +
-                bar_angle_2_along_n*(n2_x*t460 + n2_y*t461 + n2_z*t462))
-            vectors[31] = (bar_angle_2_along_m*(m2_x*t463 + m2_y*t464 + m2_z*t465) +
-                bar_angle_2_along_n*(n2_x*t463 + n2_y*t464 + n2_z*t465))
-            vectors[32] = (bar_angle_2_along_m*(m2_x*t466 + m2_y*t467 + m2_z*t468) +
-                bar_angle_2_along_n*(n2_x*t466 + n2_y*t467 + n2_z*t468))
+            vectors[18] = (bar_angle_2_along_m*(m2_x*t408 + m2_y*t409 + m2_z*t410) +
+                bar_angle_2_along_n*(n2_x*t408 + n2_y*t409 + n2_z*t410) + bar_angle_2_seen_1*t372
+                + bar_angle_2_seen_2*t378 + bar_angle_2_seen_3*t384 - t391*(-t385*(n2_x*t386 +
+                n2_y*t387 + n2_z*t388) + t389*(m2_x*t386 + m2_y*t387 + m2_z*t388)) -
+                t395*(-t385*(-n2_x*t392 - n2_y*t393 - n2_z*t394) + t389*(-m2_x*t392 - m2_y*t393 -
+                m2_z*t394)) - t405*(-t385*(n2_x*t398 + n2_y*t401 + n2_z*t404) + t389*(m2_x*t398 +
+                m2_y*t401 + m2_z*t404)))
+            vectors[19] = (bar_angle_2_along_m*(m2_x*t436 + m2_y*t437 + m2_z*t438) +
+                bar_angle_2_along_n*(n2_x*t436 + n2_y*t437 + n2_z*t438) + bar_angle_2_seen_1*t414
+                + bar_angle_2_seen_2*t418 + bar_angle_2_seen_3*t422 - t391*(-t385*(-n2_x*t426 -
+                n2_y*t427 - n2_z*t428) + t389*(-m2_x*t426 - m2_y*t427 - m2_z*t428)) -
+                t395*(-t385*(n2_x*t430 + n2_y*t432 + n2_z*t434) + t389*(m2_x*t430 + m2_y*t432 +
+                m2_z*t434)) - t405*(-t385*(n2_x*t423 + n2_y*t424 + n2_z*t425) + t389*(m2_x*t423 +
+                m2_y*t424 + m2_z*t425)))
+            vectors[20] = (bar_angle_2_along_m*(m2_x*t466 + m2_y*t467 + m2_z*t468) +
+                bar_angle_2_along_n*(n2_x*t466 + n2_y*t467 + n2_z*t468) + bar_angle_2_seen_1*t442
+                + bar_angle_2_seen_2*t446 + bar_angle_2_seen_3*t450 - t391*(-t385*(n2_x*t459 +
+                n2_y*t462 + n2_z*t465) + t389*(m2_x*t459 + m2_y*t462 + m2_z*t465)) -
+                t395*(-t385*(n2_x*t451 + n2_y*t452 + n2_z*t453) + t389*(m2_x*t451 + m2_y*t452 +
+                m2_z*t453)) - t405*(-t385*(-n2_x*t454 - n2_y*t455 - n2_z*t456) + t389*(-m2_x*t454
+                - m2_y*t455 - m2_z*t456)))
+            vectors[30] = (bar_angle_2_along_m*(m2_x*t469 + m2_y*t470 + m2_z*t471) +
+                bar_angle_2_along_n*(n2_x*t469 + n2_y*t470 + n2_z*t471))
+            vectors[31] = (bar_angle_2_along_m*(m2_x*t472 + m2_y*t473 + m2_z*t474) +
+                bar_angle_2_along_n*(n2_x*t472 + n2_y*t473 + n2_z*t474))
+            vectors[32] = (bar_angle_2_along_m*(m2_x*t475 + m2_y*t476 + m2_z*t477) +
+                bar_angle_2_along_n*(n2_x*t475 + n2_y*t476 + n2_z*t477))
             kept[18] = 0.0
             kept[19] = 0.0
             kept[20] = 0.0
-            vectors[21] = (bar_angle_2_along_m*(m2_x*t474 + m2_y*t475 + m2_z*t476) +
-                bar_angle_2_along_n*(n2_x*t474 + n2_y*t475 + n2_z*t476) + bar_angle_2_seen_2*t469
-                + bar_angle_2_seen_3*t470 - t382*(-t376*(n2_y*t468 + n2_z*t473) + t380*(m2_y*t468
-                + m2_z*t473)) - t386*(-t376*(n2_y*t465 + n2_z*t472) + t380*(m2_y*t465 +
-                m2_z*t472)) - t396*(-t376*(n2_y*t462 + n2_z*t471) + t380*(m2_y*t462 + m2_z*t471)))
-            vectors[22] = (bar_angle_2_along_m*(m2_x*t484 + m2_y*t482 + m2_z*t483) +
-                bar_angle_2_along_n*(n2_x*t484 + n2_y*t482 + n2_z*t483) + bar_angle_2_seen_1*t478
-                + bar_angle_2_seen_3*t477 - t382*(-t376*(n2_x*t481 + n2_z*t466) + t380*(m2_x*t481
-                + m2_z*t466)) - t386*(-t376*(n2_x*t480 + n2_z*t463) + t380*(m2_x*t480 +
-                m2_z*t463)) - t396*(-t376*(n2_x*t479 + n2_z*t460) + t380*(m2_x*t479 + m2_z*t460)))
-            vectors[23] = (bar_angle_2_along_m*(m2_x*t491 + m2_y*t492 + m2_z*t490) +
-                bar_angle_2_along_n*(n2_x*t491 + n2_y*t492 + n2_z*t490) + bar_angle_2_seen_1*t485
-                + bar_angle_2_seen_2*t486 - t382*(-t376*(n2_x*t467 + n2_y*t489) + t380*(m2_x*t467
-                + m2_y*t489)) - t386*(-t376*(n2_x*t464 + n2_y*t488) + t380*(m2_x*t464 +
-                m2_y*t488)) - t396*(-t376*(n2_x*t461 + n2_y*t487) + t380*(m2_x*t461 + m2_y*t487)))
-            vectors[33] = (bar_angle_2_along_m*(m2_y*t469 + m2_z*t493) +
-                bar_angle_2_along_n*(n2_y*t469 + n2_z*t493))
-            vectors[34] = (bar_angle_2_along_m*(m2_x*t494 + m2_z*t477) +
-                bar_angle_2_along_n*(n2_x*t494 + n2_z*t477))
-            vectors[35] = (bar_angle_2_along_m*(m2_x*t485 + m2_y*t495) +
-                bar_angle_2_along_n*(n2_x*t485 + n2_y*t495))
+            vectors[21] = (bar_angle_2_along_m*(m2_x*t483 + m2_y*t484 + m2_z*t485) +
+                bar_angle_2_along_n*(n2_x*t483 + n2_y*t484 + n2_z*t485) + bar_angle_2_seen_2*t478
+                + bar_angle_2_seen_3*t479 - t391*(-t385*(n2_y*t477 + n2_z*t482) + t389*(m2_y*t477
+                + m2_z*t482)) - t395*(-t385*(n2_y*t474 + n2_z*t481) + t389*(m2_y*t474 +
+                m2_z*t481)) - t405*(-t385*(n2_y*t471 + n2_z*t480) + t389*(m2_y*t471 + m2_z*t480)))
+            vectors[22] = (bar_angle_2_along_m*(m2_x*t493 + m2_y*t491 + m2_z*t492) +
+                bar_angle_2_along_n*(n2_x*t493 + n2_y*t491 + n2_z*t492) + bar_angle_2_seen_1*t487
+                + bar_angle_2_seen_3*t486 - t391*(-t385*(n2_x*t490 + n2_z*t475) + t389*(m2_x*t490
+                + m2_z*t475)) - t395*(-t385*(n2_x*t489 + n2_z*t472) + t389*(m2_x*t489 +
+                m2_z*t472)) - t405*(-t385*(n2_x*t488 + n2_z*t469) + t389*(m2_x*t488 + m2_z*t469)))
+            vectors[23] = (bar_angle_2_along_m*(m2_x*t500 + m2_y*t501 + m2_z*t499) +
+                bar_angle_2_along_n*(n2_x*t500 + n2_y*t501 + n2_z*t499) + bar_angle_2_seen_1*t494
+                + bar_angle_2_seen_2*t495 - t391*(-t385*(n2_x*t476 + n2_y*t498) + t389*(m2_x*t476
+                + m2_y*t498)) - t395*(-t385*(n2_x*t473 + n2_y*t497) + t389*(m2_x*t473 +
+                m2_y*t497)) - t405*(-t385*(n2_x*t470 + n2_y*t496) + t389*(m2_x*t470 + m2_y*t496)))
+            vectors[33] = (bar_angle_2_along_m*(m2_y*t478 + m2_z*t502) +
+                bar_angle_2_along_n*(n2_y*t478 + n2_z*t502))
+            vectors[34] = (bar_angle_2_along_m*(m2_x*t503 + m2_z*t486) +
+                bar_angle_2_along_n*(n2_x*t503 + n2_z*t486))
+            vectors[35] = (bar_angle_2_along_m*(m2_x*t494 + m2_y*t504) +
+                bar_angle_2_along_n*(n2_x*t494 + n2_y*t504))
             kept[21] = 0.0
             kept[22] = 0.0
             kept[23] = 0.0
             kept[0] = 0.0
             kept[1] = 0.0
-            kept[2] = (kept[9]*((((0 if t499 > 0.0 else (1 if kept_rate > 0.0 else -1)) if t501 >
-                0.0 else 0) if t502 > 0.0 else 0) if t496 > 0.0 else 0))
-            kept[3] = kept[9]*(((0 if t501 > 0.0 else 1) if t502 > 0.0 else 0) if t496 > 0.0 else 0)
+            kept[2] = (kept[9]*((((0 if t508 > 0.0 else (1 if kept_rate > 0.0 else -1)) if t510 >
+                0.0 else 0) if t511 > 0.0 else 0) if t505 > 0.0 else 0))
+            kept[3] = kept[9]*(((0 if t510 > 0.0 else 1) if t511 > 0.0 else 0) if t505 > 0.0 else 0)
             kept[4] = 0.0
             kept[5] = 0.0
             vectors[36] = 0.0

@@ -106,7 +106,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[2] = t6*t9
             g[3] = t8*t9
             frames[index[first + AT_FRAME]] = way
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
+            frames[index[first + AT_FRAME] + 1] = way_rate
             frames[index[first + AT_FRAME] + 2] = ((t13 if -slow + t13 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
@@ -175,7 +175,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[2] = t17*t22 + t17*t25 - t23*t24
             vectors[3] = t19*t22 + t19*t25 - t24*t26
             kept[5] = delta_way
-            kept[6] = delta_speed_beyond
+            kept[6] = delta_way_rate
             kept[7] = (delta_kept_impact*(((0 if t32 > 0.0 else 1) if t33 > 0.0 else 0) if t27 >
                 0.0 else 0) + delta_kept_rate*((((0 if t30 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t32 > 0.0 else 0) if t33 > 0.0 else 0) if t27 > 0.0 else 0) +
@@ -199,13 +199,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t12 = -t10 + t11
             t13 = t11 if t12 > 0.0 else t10
             t14 = -kept_impact + t13
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t12 >
-                0.0 else 0) if t14 > 0.0 else 0) if -slow + (t13 if t14 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t12 > 0.0 else 0)
+                if t14 > 0.0 else 0) if -slow + (t13 if t14 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             bar_way = kept[5] + bar_value
-            bar_way_rate = bar_speed_beyond*side
+            bar_way_rate = kept[6] + bar_speed_beyond*side
             t15 = xa_x - xb_x
             t16 = -t15
             t17 = t16*t16

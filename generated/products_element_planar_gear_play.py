@@ -105,7 +105,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[3] = t3
             frames[index[first + AT_FRAME]] = angle_1
             frames[index[first + AT_FRAME] + 1] = angle_2
-            frames[index[first + AT_FRAME] + 2] = speed_beyond
+            frames[index[first + AT_FRAME] + 2] = angle_1_rate - angle_2_rate*ratio
             frames[index[first + AT_FRAME] + 3] = ((t7 if -slow + t7 > 0.0 else 0.0) if touches -
                 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 4] = beyond
@@ -159,7 +159,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[3] = t5
             kept[6] = delta_angle_1
             kept[7] = delta_angle_2
-            kept[8] = delta_speed_beyond
+            kept[8] = -angle_2_rate*delta_ratio + delta_angle_1_rate - delta_angle_2_rate*ratio
             kept[9] = (delta_kept_impact*(((0 if t11 > 0.0 else 1) if t12 > 0.0 else 0) if t6 >
                 0.0 else 0) + delta_kept_rate*((((0 if t9 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t11 > 0.0 else 0) if t12 > 0.0 else 0) if t6 > 0.0 else 0) +
@@ -178,16 +178,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t5 = -t3 + t4
             t6 = t4 if t5 > 0.0 else t3
             t7 = -kept_impact + t6
-            bar_speed_beyond = (kept[8] + kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t5 >
-                0.0 else 0) if t7 > 0.0 else 0) if -slow + (t6 if t7 > 0.0 else kept_impact) > 0.0
-                else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t5 > 0.0 else 0)
+                if t7 > 0.0 else 0) if -slow + (t6 if t7 > 0.0 else kept_impact) > 0.0 else 0) if
+                touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[10] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             t8 = bar_speed_beyond*side
             bar_angle_1 = kept[6] + bar_value
-            bar_angle_1_rate = t8
+            bar_angle_1_rate = kept[8] + t8
             bar_angle_2 = kept[7] - bar_value*ratio
-            bar_angle_2_rate = -ratio*t8
+            bar_angle_2_rate = -kept[8]*ratio - ratio*t8
             t9 = touches - 0.5
             t10 = kept_rate if kept_rate > 0.0 else -kept_rate
             t11 = speed_beyond if speed_beyond > 0.0 else -speed_beyond

@@ -120,7 +120,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[3] = t11*t12
             g[4] = t11*(t10*(-xa_y + xb_y) + t13*(-xa_x + xb_x))
             frames[index[first + AT_FRAME]] = way
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
+            frames[index[first + AT_FRAME] + 1] = way_rate
             frames[index[first + AT_FRAME] + 2] = ((t17 if -slow + t17 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
@@ -210,7 +210,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[4] = (t32*(t31*t42 + t38*t43) + t36*(t31*(-dxa_y + dxb_y) + t38*(-dxa_x +
                 dxb_x) + t40*t43 + t41*t42))
             kept[5] = delta_way
-            kept[6] = delta_speed_beyond
+            kept[6] = delta_way_rate
             kept[7] = (delta_kept_impact*(((0 if t49 > 0.0 else 1) if t50 > 0.0 else 0) if t44 >
                 0.0 else 0) + delta_kept_rate*((((0 if t47 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t49 > 0.0 else 0) if t50 > 0.0 else 0) if t44 > 0.0 else 0) +
@@ -232,13 +232,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t15 = -t13 + t14
             t16 = t14 if t15 > 0.0 else t13
             t17 = -kept_impact + t16
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t15 >
-                0.0 else 0) if t17 > 0.0 else 0) if -slow + (t16 if t17 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t15 > 0.0 else 0)
+                if t17 > 0.0 else 0) if -slow + (t16 if t17 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             bar_way = kept[5] + bar_value
-            bar_way_rate = bar_speed_beyond*side
+            bar_way_rate = kept[6] + bar_speed_beyond*side
             t18 = Ra_cos*e_x
             t19 = -Ra_sin*e_y + t18
             t20 = -t19

@@ -93,7 +93,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[0] = t2
             g[1] = -t2
             frames[index[first + AT_FRAME]] = angle
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
+            frames[index[first + AT_FRAME] + 1] = angle_rate
             frames[index[first + AT_FRAME] + 2] = ((t6 if -slow + t6 > 0.0 else 0.0) if touches -
                 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
@@ -135,7 +135,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[0] = t4
             vectors[1] = -t4
             kept[5] = delta_angle
-            kept[6] = delta_speed_beyond
+            kept[6] = delta_angle_rate
             kept[7] = (delta_kept_impact*(((0 if t10 > 0.0 else 1) if t11 > 0.0 else 0) if t5 >
                 0.0 else 0) + delta_kept_rate*((((0 if t8 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t10 > 0.0 else 0) if t11 > 0.0 else 0) if t5 > 0.0 else 0) +
@@ -153,13 +153,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t4 = -t2 + t3
             t5 = t3 if t4 > 0.0 else t2
             t6 = -kept_impact + t5
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t4 >
-                0.0 else 0) if t6 > 0.0 else 0) if -slow + (t5 if t6 > 0.0 else kept_impact) > 0.0
-                else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t4 > 0.0 else 0)
+                if t6 > 0.0 else 0) if -slow + (t5 if t6 > 0.0 else kept_impact) > 0.0 else 0) if
+                touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             bar_angle = kept[5] + bar_value
-            bar_angle_rate = bar_speed_beyond*side
+            bar_angle_rate = kept[6] + bar_speed_beyond*side
             t7 = touches - 0.5
             t8 = kept_rate if kept_rate > 0.0 else -kept_rate
             t9 = speed_beyond if speed_beyond > 0.0 else -speed_beyond

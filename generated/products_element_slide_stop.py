@@ -145,7 +145,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[8] = (t9*(t12*(-Ra_xx*e_y + Ra_xy*e_x) + t13*(-Ra_yx*e_y + Ra_yy*e_x) +
                 t14*(-Ra_zx*e_y + Ra_zy*e_x)))
             frames[index[first + AT_FRAME]] = way
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
+            frames[index[first + AT_FRAME] + 1] = way_rate
             frames[index[first + AT_FRAME] + 2] = ((t18 if -slow + t18 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
@@ -294,7 +294,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e_x*t49 - e_y*t48) + t61*(-Ra_zx*delta_e_y + Ra_zy*delta_e_x + e_x*t54 - e_y*t53)
                 + t63*t69 + t64*t70 + t65*t71))
             kept[5] = delta_way
-            kept[6] = delta_speed_beyond
+            kept[6] = delta_way_rate
             kept[7] = (delta_kept_impact*(((0 if t77 > 0.0 else 1) if t78 > 0.0 else 0) if t72 >
                 0.0 else 0) + delta_kept_rate*((((0 if t75 > 0.0 else (1 if kept_rate > 0.0 else
                 -1)) if t77 > 0.0 else 0) if t78 > 0.0 else 0) if t72 > 0.0 else 0) +
@@ -324,13 +324,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t16 = -t14 + t15
             t17 = t15 if t16 > 0.0 else t14
             t18 = -kept_impact + t17
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t16 >
-                0.0 else 0) if t18 > 0.0 else 0) if -slow + (t17 if t18 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t16 > 0.0 else 0)
+                if t18 > 0.0 else 0) if -slow + (t17 if t18 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             bar_way = kept[5] + bar_value
-            bar_way_rate = bar_speed_beyond*side
+            bar_way_rate = kept[6] + bar_speed_beyond*side
             t19 = Ra_xy*e_z
             t20 = Ra_xz*e_y
             t21 = t19 - t20

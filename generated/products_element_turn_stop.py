@@ -155,35 +155,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t31 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
             t32 = d_y*t30 - d_z*t31
             t33 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t34 = push*side/(t23*t23 + t33*t33)
-            t35 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t36 = -d_x*t24 + d_z*t35
-            t37 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t38 = -d_x*t27 + d_z*t37
-            t39 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t40 = -d_x*t30 + d_z*t39
-            t41 = d_x*t25 - d_y*t35
-            t42 = d_x*t28 - d_y*t37
-            t43 = d_x*t31 - d_y*t39
-            t44 = atan2(t23, t33)
-            t45 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t46 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t47 = t46 if -t45 + t46 > 0.0 else t45
-            t48 = t47 if -kept_impact + t47 > 0.0 else kept_impact
-            g[0] = t34*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
-            g[1] = t34*(-t23*(n_x*t36 + n_y*t38 + n_z*t40) + t33*(m_x*t36 + m_y*t38 + m_z*t40))
-            g[2] = t34*(-t23*(n_x*t41 + n_y*t42 + n_z*t43) + t33*(m_x*t41 + m_y*t42 + m_z*t43))
-            g[3] = (t34*(-t23*(-angle_seen_2*n_z + angle_seen_3*n_y) + t33*(-angle_seen_2*m_z +
+            t34 = 1/(t23*t23 + t33*t33)
+            t35 = push*side*t34
+            t36 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t37 = -d_x*t24 + d_z*t36
+            t38 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t39 = -d_x*t27 + d_z*t38
+            t40 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t41 = -d_x*t30 + d_z*t40
+            t42 = d_x*t25 - d_y*t36
+            t43 = d_x*t28 - d_y*t38
+            t44 = d_x*t31 - d_y*t40
+            t45 = atan2(t23, t33)
+            t46 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t47 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t48 = t47 if -t46 + t47 > 0.0 else t46
+            t49 = t48 if -kept_impact + t48 > 0.0 else kept_impact
+            g[0] = t35*(-t23*(n_x*t26 + n_y*t29 + n_z*t32) + t33*(m_x*t26 + m_y*t29 + m_z*t32))
+            g[1] = t35*(-t23*(n_x*t37 + n_y*t39 + n_z*t41) + t33*(m_x*t37 + m_y*t39 + m_z*t41))
+            g[2] = t35*(-t23*(n_x*t42 + n_y*t43 + n_z*t44) + t33*(m_x*t42 + m_y*t43 + m_z*t44))
+            g[3] = (t35*(-t23*(-angle_seen_2*n_z + angle_seen_3*n_y) + t33*(-angle_seen_2*m_z +
                 angle_seen_3*m_y)))
-            g[4] = (t34*(-t23*(angle_seen_1*n_z - angle_seen_3*n_x) + t33*(angle_seen_1*m_z -
+            g[4] = (t35*(-t23*(angle_seen_1*n_z - angle_seen_3*n_x) + t33*(angle_seen_1*m_z -
                 angle_seen_3*m_x)))
-            g[5] = (t34*(-t23*(-angle_seen_1*n_y + angle_seen_2*n_x) + t33*(-angle_seen_1*m_y +
+            g[5] = (t35*(-t23*(-angle_seen_1*n_y + angle_seen_2*n_x) + t33*(-angle_seen_1*m_y +
                 angle_seen_2*m_x)))
-            frames[index[first + AT_FRAME]] = (t44 +
-                6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t44 +
+            frames[index[first + AT_FRAME]] = (t45 +
+                6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t45 +
                 0.5))
-            frames[index[first + AT_FRAME] + 1] = speed_beyond
-            frames[index[first + AT_FRAME] + 2] = ((t48 if -slow + t48 > 0.0 else 0.0) if touches
+            frames[index[first + AT_FRAME] + 1] = t34*(angle_along_m*t33 - angle_along_n*t23)
+            frames[index[first + AT_FRAME] + 2] = ((t49 if -slow + t49 > 0.0 else 0.0) if touches
                 - 0.5 > 0.0 else 0.0)
             frames[index[first + AT_FRAME] + 3] = beyond
             frames[index[first + AT_FRAME] + 4] = push
@@ -348,109 +349,111 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t124 = delta_angle_seen_1*n_x
             t125 = delta_angle_seen_2*n_y
             t126 = delta_angle_seen_3*n_z
-            t127 = ((push*side*(-t108*(2*t121 + 2*t122 + 2*t123 + 2*t124 + 2*t125 + 2*t126) -
-                t97*(2*t115 + 2*t116 + 2*t117 + 2*t118 + 2*t119 + 2*t120)))/(t111*t111))
-            t128 = t115 + t116 + t117 + t118 + t119 + t120
-            t129 = t121 + t122 + t123 + t124 + t125 + t126
-            t130 = Rb_xy*dthb_z - Rb_xz*dthb_y
-            t131 = Rb_yy*dthb_z - Rb_yz*dthb_y
-            t132 = Rb_zy*dthb_z - Rb_zz*dthb_y
-            t133 = Ra_xx*dtha_y - Ra_xy*dtha_x
-            t134 = Ra_yx*dtha_y - Ra_yy*dtha_x
-            t135 = Ra_zx*dtha_y - Ra_zy*dtha_x
-            t136 = Ra_xz*t130 + Ra_yz*t131 + Ra_zz*t132 + Rb_xx*t133 + Rb_yx*t134 + Rb_zx*t135
-            t137 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-            t138 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-            t139 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-            t140 = Ra_xy*t130 + Ra_yy*t131 + Ra_zy*t132 + Rb_xx*t137 + Rb_yx*t138 + Rb_zx*t139
-            t141 = d_y*t136 - d_z*t140 + delta_d_y*t98 - delta_d_z*t99
-            t142 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-            t143 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-            t144 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-            t145 = Ra_xz*t142 + Ra_yz*t143 + Ra_zz*t144 + Rb_xy*t133 + Rb_yy*t134 + Rb_zy*t135
-            t146 = Ra_xy*t142 + Ra_yy*t143 + Ra_zy*t144 + Rb_xy*t137 + Rb_yy*t138 + Rb_zy*t139
-            t147 = d_y*t145 - d_z*t146 + delta_d_y*t101 - delta_d_z*t102
-            t148 = Rb_xx*dthb_y - Rb_xy*dthb_x
-            t149 = Rb_yx*dthb_y - Rb_yy*dthb_x
-            t150 = Rb_zx*dthb_y - Rb_zy*dthb_x
-            t151 = Ra_xz*t148 + Ra_yz*t149 + Ra_zz*t150 + Rb_xz*t133 + Rb_yz*t134 + Rb_zz*t135
-            t152 = Ra_xy*t148 + Ra_yy*t149 + Ra_zy*t150 + Rb_xz*t137 + Rb_yz*t138 + Rb_zz*t139
-            t153 = d_y*t151 - d_z*t152 + delta_d_y*t104 - delta_d_z*t105
-            t154 = push*t113
-            t155 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t156 = -d_x*t98 + d_z*t155
-            t157 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t158 = -d_x*t101 + d_z*t157
-            t159 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t160 = -d_x*t104 + d_z*t159
-            t161 = n_x*t156 + n_y*t158 + n_z*t160
-            t162 = m_x*t156 + m_y*t158 + m_z*t160
-            t163 = t108*t162 - t161*t97
-            t164 = Ra_xy*dtha_z - Ra_xz*dtha_y
-            t165 = Ra_yy*dtha_z - Ra_yz*dtha_y
-            t166 = Ra_zy*dtha_z - Ra_zz*dtha_y
-            t167 = Ra_xx*t130 + Ra_yx*t131 + Ra_zx*t132 + Rb_xx*t164 + Rb_yx*t165 + Rb_zx*t166
-            t168 = -d_x*t136 + d_z*t167 - delta_d_x*t98 + delta_d_z*t155
-            t169 = Ra_xx*t142 + Ra_yx*t143 + Ra_zx*t144 + Rb_xy*t164 + Rb_yy*t165 + Rb_zy*t166
-            t170 = -d_x*t145 + d_z*t169 - delta_d_x*t101 + delta_d_z*t157
-            t171 = Ra_xx*t148 + Ra_yx*t149 + Ra_zx*t150 + Rb_xz*t164 + Rb_yz*t165 + Rb_zz*t166
-            t172 = -d_x*t151 + d_z*t171 - delta_d_x*t104 + delta_d_z*t159
-            t173 = d_x*t99 - d_y*t155
-            t174 = d_x*t102 - d_y*t157
-            t175 = d_x*t105 - d_y*t159
-            t176 = n_x*t173 + n_y*t174 + n_z*t175
-            t177 = m_x*t173 + m_y*t174 + m_z*t175
-            t178 = t108*t177 - t176*t97
-            t179 = d_x*t140 - d_y*t167 + delta_d_x*t99 - delta_d_y*t155
-            t180 = d_x*t146 - d_y*t169 + delta_d_x*t102 - delta_d_y*t157
-            t181 = d_x*t152 - d_y*t171 + delta_d_x*t105 - delta_d_y*t159
-            t182 = -angle_seen_2*m_z + angle_seen_3*m_y
-            t183 = -angle_seen_2*n_z + angle_seen_3*n_y
-            t184 = t108*t182 - t183*t97
-            t185 = angle_seen_1*m_z - angle_seen_3*m_x
-            t186 = angle_seen_1*n_z - angle_seen_3*n_x
-            t187 = t108*t185 - t186*t97
-            t188 = -angle_seen_1*m_y + angle_seen_2*m_x
-            t189 = -angle_seen_1*n_y + angle_seen_2*n_x
-            t190 = t108*t188 - t189*t97
-            t191 = touches - 0.5
-            t192 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t193 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t194 = -t192 + t193
-            t195 = t193 if t194 > 0.0 else t192
-            t196 = -kept_impact + t195
-            t197 = -slow + (t195 if t196 > 0.0 else kept_impact)
-            vectors[0] = (t110*t114 + t110*t127 + t154*(-t107*t128 + t108*(delta_m_x*t100 +
-                delta_m_y*t103 + delta_m_z*t106 + m_x*t141 + m_y*t147 + m_z*t153) + t109*t129 -
-                t97*(delta_n_x*t100 + delta_n_y*t103 + delta_n_z*t106 + n_x*t141 + n_y*t147 +
-                n_z*t153)))
-            vectors[1] = (t114*t163 + t127*t163 + t154*(t108*(delta_m_x*t156 + delta_m_y*t158 +
-                delta_m_z*t160 + m_x*t168 + m_y*t170 + m_z*t172) - t128*t161 + t129*t162 -
-                t97*(delta_n_x*t156 + delta_n_y*t158 + delta_n_z*t160 + n_x*t168 + n_y*t170 +
-                n_z*t172)))
-            vectors[2] = (t114*t178 + t127*t178 + t154*(t108*(delta_m_x*t173 + delta_m_y*t174 +
-                delta_m_z*t175 + m_x*t179 + m_y*t180 + m_z*t181) - t128*t176 + t129*t177 -
-                t97*(delta_n_x*t173 + delta_n_y*t174 + delta_n_z*t175 + n_x*t179 + n_y*t180 +
-                n_z*t181)))
-            vectors[3] = (t114*t184 + t127*t184 + t154*(t108*(-angle_seen_2*delta_m_z +
+            t127 = ((-t108*(2*t121 + 2*t122 + 2*t123 + 2*t124 + 2*t125 + 2*t126) - t97*(2*t115 +
+                2*t116 + 2*t117 + 2*t118 + 2*t119 + 2*t120))/(t111*t111))
+            t128 = push*side*t127
+            t129 = t115 + t116 + t117 + t118 + t119 + t120
+            t130 = t121 + t122 + t123 + t124 + t125 + t126
+            t131 = Rb_xy*dthb_z - Rb_xz*dthb_y
+            t132 = Rb_yy*dthb_z - Rb_yz*dthb_y
+            t133 = Rb_zy*dthb_z - Rb_zz*dthb_y
+            t134 = Ra_xx*dtha_y - Ra_xy*dtha_x
+            t135 = Ra_yx*dtha_y - Ra_yy*dtha_x
+            t136 = Ra_zx*dtha_y - Ra_zy*dtha_x
+            t137 = Ra_xz*t131 + Ra_yz*t132 + Ra_zz*t133 + Rb_xx*t134 + Rb_yx*t135 + Rb_zx*t136
+            t138 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+            t139 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+            t140 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+            t141 = Ra_xy*t131 + Ra_yy*t132 + Ra_zy*t133 + Rb_xx*t138 + Rb_yx*t139 + Rb_zx*t140
+            t142 = d_y*t137 - d_z*t141 + delta_d_y*t98 - delta_d_z*t99
+            t143 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+            t144 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+            t145 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+            t146 = Ra_xz*t143 + Ra_yz*t144 + Ra_zz*t145 + Rb_xy*t134 + Rb_yy*t135 + Rb_zy*t136
+            t147 = Ra_xy*t143 + Ra_yy*t144 + Ra_zy*t145 + Rb_xy*t138 + Rb_yy*t139 + Rb_zy*t140
+            t148 = d_y*t146 - d_z*t147 + delta_d_y*t101 - delta_d_z*t102
+            t149 = Rb_xx*dthb_y - Rb_xy*dthb_x
+            t150 = Rb_yx*dthb_y - Rb_yy*dthb_x
+            t151 = Rb_zx*dthb_y - Rb_zy*dthb_x
+            t152 = Ra_xz*t149 + Ra_yz*t150 + Ra_zz*t151 + Rb_xz*t134 + Rb_yz*t135 + Rb_zz*t136
+            t153 = Ra_xy*t149 + Ra_yy*t150 + Ra_zy*t151 + Rb_xz*t138 + Rb_yz*t139 + Rb_zz*t140
+            t154 = d_y*t152 - d_z*t153 + delta_d_y*t104 - delta_d_z*t105
+            t155 = push*t113
+            t156 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t157 = -d_x*t98 + d_z*t156
+            t158 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t159 = -d_x*t101 + d_z*t158
+            t160 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t161 = -d_x*t104 + d_z*t160
+            t162 = n_x*t157 + n_y*t159 + n_z*t161
+            t163 = m_x*t157 + m_y*t159 + m_z*t161
+            t164 = t108*t163 - t162*t97
+            t165 = Ra_xy*dtha_z - Ra_xz*dtha_y
+            t166 = Ra_yy*dtha_z - Ra_yz*dtha_y
+            t167 = Ra_zy*dtha_z - Ra_zz*dtha_y
+            t168 = Ra_xx*t131 + Ra_yx*t132 + Ra_zx*t133 + Rb_xx*t165 + Rb_yx*t166 + Rb_zx*t167
+            t169 = -d_x*t137 + d_z*t168 - delta_d_x*t98 + delta_d_z*t156
+            t170 = Ra_xx*t143 + Ra_yx*t144 + Ra_zx*t145 + Rb_xy*t165 + Rb_yy*t166 + Rb_zy*t167
+            t171 = -d_x*t146 + d_z*t170 - delta_d_x*t101 + delta_d_z*t158
+            t172 = Ra_xx*t149 + Ra_yx*t150 + Ra_zx*t151 + Rb_xz*t165 + Rb_yz*t166 + Rb_zz*t167
+            t173 = -d_x*t152 + d_z*t172 - delta_d_x*t104 + delta_d_z*t160
+            t174 = d_x*t99 - d_y*t156
+            t175 = d_x*t102 - d_y*t158
+            t176 = d_x*t105 - d_y*t160
+            t177 = n_x*t174 + n_y*t175 + n_z*t176
+            t178 = m_x*t174 + m_y*t175 + m_z*t176
+            t179 = t108*t178 - t177*t97
+            t180 = d_x*t141 - d_y*t168 + delta_d_x*t99 - delta_d_y*t156
+            t181 = d_x*t147 - d_y*t170 + delta_d_x*t102 - delta_d_y*t158
+            t182 = d_x*t153 - d_y*t172 + delta_d_x*t105 - delta_d_y*t160
+            t183 = -angle_seen_2*m_z + angle_seen_3*m_y
+            t184 = -angle_seen_2*n_z + angle_seen_3*n_y
+            t185 = t108*t183 - t184*t97
+            t186 = angle_seen_1*m_z - angle_seen_3*m_x
+            t187 = angle_seen_1*n_z - angle_seen_3*n_x
+            t188 = t108*t186 - t187*t97
+            t189 = -angle_seen_1*m_y + angle_seen_2*m_x
+            t190 = -angle_seen_1*n_y + angle_seen_2*n_x
+            t191 = t108*t189 - t190*t97
+            t192 = touches - 0.5
+            t193 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t194 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t195 = -t193 + t194
+            t196 = t194 if t195 > 0.0 else t193
+            t197 = -kept_impact + t196
+            t198 = -slow + (t196 if t197 > 0.0 else kept_impact)
+            vectors[0] = (t110*t114 + t110*t128 + t155*(-t107*t129 + t108*(delta_m_x*t100 +
+                delta_m_y*t103 + delta_m_z*t106 + m_x*t142 + m_y*t148 + m_z*t154) + t109*t130 -
+                t97*(delta_n_x*t100 + delta_n_y*t103 + delta_n_z*t106 + n_x*t142 + n_y*t148 +
+                n_z*t154)))
+            vectors[1] = (t114*t164 + t128*t164 + t155*(t108*(delta_m_x*t157 + delta_m_y*t159 +
+                delta_m_z*t161 + m_x*t169 + m_y*t171 + m_z*t173) - t129*t162 + t130*t163 -
+                t97*(delta_n_x*t157 + delta_n_y*t159 + delta_n_z*t161 + n_x*t169 + n_y*t171 +
+                n_z*t173)))
+            vectors[2] = (t114*t179 + t128*t179 + t155*(t108*(delta_m_x*t174 + delta_m_y*t175 +
+                delta_m_z*t176 + m_x*t180 + m_y*t181 + m_z*t182) - t129*t177 + t130*t178 -
+                t97*(delta_n_x*t174 + delta_n_y*t175 + delta_n_z*t176 + n_x*t180 + n_y*t181 +
+                n_z*t182)))
+            vectors[3] = (t114*t185 + t128*t185 + t155*(t108*(-angle_seen_2*delta_m_z +
                 angle_seen_3*delta_m_y - delta_angle_seen_2*m_z + delta_angle_seen_3*m_y) -
-                t128*t183 + t129*t182 - t97*(-angle_seen_2*delta_n_z + angle_seen_3*delta_n_y -
+                t129*t184 + t130*t183 - t97*(-angle_seen_2*delta_n_z + angle_seen_3*delta_n_y -
                 delta_angle_seen_2*n_z + delta_angle_seen_3*n_y)))
-            vectors[4] = (t114*t187 + t127*t187 + t154*(t108*(angle_seen_1*delta_m_z -
+            vectors[4] = (t114*t188 + t128*t188 + t155*(t108*(angle_seen_1*delta_m_z -
                 angle_seen_3*delta_m_x + delta_angle_seen_1*m_z - delta_angle_seen_3*m_x) -
-                t128*t186 + t129*t185 - t97*(angle_seen_1*delta_n_z - angle_seen_3*delta_n_x +
+                t129*t187 + t130*t186 - t97*(angle_seen_1*delta_n_z - angle_seen_3*delta_n_x +
                 delta_angle_seen_1*n_z - delta_angle_seen_3*n_x)))
-            vectors[5] = (t114*t190 + t127*t190 + t154*(t108*(-angle_seen_1*delta_m_y +
+            vectors[5] = (t114*t191 + t128*t191 + t155*(t108*(-angle_seen_1*delta_m_y +
                 angle_seen_2*delta_m_x - delta_angle_seen_1*m_y + delta_angle_seen_2*m_x) -
-                t128*t189 + t129*t188 - t97*(-angle_seen_1*delta_n_y + angle_seen_2*delta_n_x -
+                t129*t190 + t130*t189 - t97*(-angle_seen_1*delta_n_y + angle_seen_2*delta_n_x -
                 delta_angle_seen_1*n_y + delta_angle_seen_2*n_x)))
-            kept[5] = t108*t112*t128 - t112*t129*t97
-            kept[6] = delta_speed_beyond
-            kept[7] = (delta_kept_impact*(((0 if t196 > 0.0 else 1) if t197 > 0.0 else 0) if t191
-                > 0.0 else 0) + delta_kept_rate*((((0 if t194 > 0.0 else (1 if kept_rate > 0.0
-                else -1)) if t196 > 0.0 else 0) if t197 > 0.0 else 0) if t191 > 0.0 else 0) +
-                delta_speed_beyond*(((((1 if speed_beyond > 0.0 else -1) if t194 > 0.0 else 0) if
-                t196 > 0.0 else 0) if t197 > 0.0 else 0) if t191 > 0.0 else 0))
+            kept[5] = t108*t112*t129 - t112*t130*t97
+            kept[6] = (t112*(angle_along_m*t130 - angle_along_n*t129 + delta_angle_along_m*t108 -
+                delta_angle_along_n*t97) + t127*(angle_along_m*t108 - angle_along_n*t97))
+            kept[7] = (delta_kept_impact*(((0 if t197 > 0.0 else 1) if t198 > 0.0 else 0) if t192
+                > 0.0 else 0) + delta_kept_rate*((((0 if t195 > 0.0 else (1 if kept_rate > 0.0
+                else -1)) if t197 > 0.0 else 0) if t198 > 0.0 else 0) if t192 > 0.0 else 0) +
+                delta_speed_beyond*(((((1 if speed_beyond > 0.0 else -1) if t195 > 0.0 else 0) if
+                t197 > 0.0 else 0) if t198 > 0.0 else 0) if t192 > 0.0 else 0))
             kept[8] = delta_beyond
             kept[9] = delta_push
         if task == TRANSPOSED:
@@ -492,9 +495,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t46 = -t44 + t45
             t47 = t45 if t46 > 0.0 else t44
             t48 = -kept_impact + t47
-            bar_speed_beyond = (kept[6] + kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t46 >
-                0.0 else 0) if t48 > 0.0 else 0) if -slow + (t47 if t48 > 0.0 else kept_impact) >
-                0.0 else 0) if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
+            bar_speed_beyond = (kept[7]*(((((1 if speed_beyond > 0.0 else -1) if t46 > 0.0 else 0)
+                if t48 > 0.0 else 0) if -slow + (t47 if t48 > 0.0 else kept_impact) > 0.0 else 0)
+                if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
             bar_beyond = kept[8] + bar_depth*(1 if beyond > 0.0 else 0)
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             t49 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
@@ -502,290 +505,295 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t51 = t49*t49 + t50*t50
             t52 = 1/t51
             t53 = m_x*t50
-            t54 = -t49
-            t55 = t52*t54
-            t56 = n_x*t55 + t52*t53
-            t57 = side*t52
-            t58 = 2*t49
-            t59 = 2*t50
-            t60 = -m_x*t58 - n_x*t59
-            t61 = side/(t51*t51)
-            t62 = t61*(angle_along_m*t50 - angle_along_n*t49)
+            t54 = -t49*t52
+            t55 = n_x*t54 + t52*t53
+            t56 = t52*(angle_along_m*n_x - angle_along_n*m_x)
+            t57 = 2*t49
+            t58 = 2*t50
+            t59 = -m_x*t57 - n_x*t58
+            t60 = 1/(t51*t51)
+            t61 = t60*(angle_along_m*t50 - angle_along_n*t49)
+            t62 = t59*t61
             t63 = -angle_seen_2*n_z + angle_seen_3*n_y
             t64 = -angle_seen_2*m_z + angle_seen_3*m_y
-            t65 = push*t57
-            t66 = -t49*t63 + t50*t64
-            t67 = push*t61
-            t68 = t60*t67
-            t69 = angle_seen_1*n_z - angle_seen_3*n_x
-            t70 = angle_seen_1*m_z - angle_seen_3*m_x
-            t71 = n_z*t49
-            t72 = m_z*t50
-            t73 = -t49*t69 + t50*t70
-            t74 = -angle_seen_1*n_y + angle_seen_2*n_x
-            t75 = -angle_seen_1*m_y + angle_seen_2*m_x
-            t76 = m_y*t50
-            t77 = -n_y*t49 + t76
-            t78 = -t49*t74 + t50*t75
-            t79 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t80 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t81 = d_y*t79 - d_z*t80
-            t82 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t83 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t84 = d_y*t82 - d_z*t83
-            t85 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t86 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t87 = d_y*t85 - d_z*t86
-            t88 = n_x*t81 + n_y*t84 + n_z*t87
-            t89 = m_x*t81 + m_y*t84 + m_z*t87
-            t90 = -t49*t88 + t50*t89
-            t91 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t92 = -d_x*t79 + d_z*t91
-            t93 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t94 = -d_x*t82 + d_z*t93
-            t95 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t96 = -d_x*t85 + d_z*t95
-            t97 = n_x*t92 + n_y*t94 + n_z*t96
-            t98 = m_x*t92 + m_y*t94 + m_z*t96
-            t99 = -t49*t97 + t50*t98
-            t100 = d_x*t80 - d_y*t91
-            t101 = d_x*t83 - d_y*t93
-            t102 = d_x*t86 - d_y*t95
-            t103 = n_x*t100 + n_y*t101 + n_z*t102
-            t104 = m_x*t100 + m_y*t101 + m_z*t102
-            t105 = -t103*t49 + t104*t50
-            t106 = n_y*t55 + t52*t76
-            t107 = -m_y*t58 - n_y*t59
-            t108 = t107*t67
-            t109 = -n_x*t49 + t53
-            t110 = n_z*t55 + t52*t72
-            t111 = -m_z*t58 - n_z*t59
-            t112 = t111*t67
-            t113 = bar_speed_beyond*t57
-            bar_angle_seen_1 = (kept[5]*t56 + vectors[0]*(t65*(-m_x*t88 + n_x*t89) + t68*t90) +
-                vectors[1]*(t65*(-m_x*t97 + n_x*t98) + t68*t99) + vectors[2]*(t105*t68 +
-                t65*(-m_x*t103 + n_x*t104)) + vectors[3]*(t65*(-m_x*t63 + n_x*t64) + t66*t68) +
-                vectors[4]*(t65*(-m_x*t69 + n_x*t70 - t71 + t72) + t68*t73) +
-                vectors[5]*(t65*(-m_x*t74 + n_x*t75 - t77) + t68*t78) +
-                bar_speed_beyond*(t57*(angle_along_m*n_x - angle_along_n*m_x) + t60*t62) +
-                bar_value*t56)
-            bar_angle_seen_2 = (kept[5]*t106 + vectors[0]*(t108*t90 + t65*(-m_y*t88 + n_y*t89)) +
-                vectors[1]*(t108*t99 + t65*(-m_y*t97 + n_y*t98)) + vectors[2]*(t105*t108 +
-                t65*(-m_y*t103 + n_y*t104)) + vectors[3]*(t108*t66 + t65*(-m_y*t63 + n_y*t64 + t71
-                - t72)) + vectors[4]*(t108*t73 + t65*(-m_y*t69 + n_y*t70)) + vectors[5]*(t108*t78
-                + t65*(-m_y*t74 + n_y*t75 + t109)) + bar_speed_beyond*(t107*t62 +
-                t57*(angle_along_m*n_y - angle_along_n*m_y)) + bar_value*t106)
-            bar_angle_seen_3 = (kept[5]*t110 + vectors[0]*(t112*t90 + t65*(-m_z*t88 + n_z*t89)) +
-                vectors[1]*(t112*t99 + t65*(-m_z*t97 + n_z*t98)) + vectors[2]*(t105*t112 +
-                t65*(-m_z*t103 + n_z*t104)) + vectors[3]*(t112*t66 + t65*(-m_z*t63 + n_z*t64 +
-                t77)) + vectors[4]*(t112*t73 + t65*(-m_z*t69 + n_z*t70 - t109)) +
-                vectors[5]*(t112*t78 + t65*(-m_z*t74 + n_z*t75)) + bar_speed_beyond*(t111*t62 +
-                t57*(angle_along_m*n_z - angle_along_n*m_z)) + bar_value*t110)
-            bar_angle_along_n = t113*t54
-            bar_angle_along_m = t113*t50
-            t114 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t115 = d_y*t114
-            t116 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t117 = -t116
-            t118 = d_z*t117
-            t119 = t115 + t118
-            t120 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t65 = push*side
+            t66 = t52*t65
+            t67 = -t49*t63 + t50*t64
+            t68 = t60*t65
+            t69 = t59*t68
+            t70 = angle_seen_1*n_z - angle_seen_3*n_x
+            t71 = angle_seen_1*m_z - angle_seen_3*m_x
+            t72 = n_z*t49
+            t73 = m_z*t50
+            t74 = -t49*t70 + t50*t71
+            t75 = -angle_seen_1*n_y + angle_seen_2*n_x
+            t76 = -angle_seen_1*m_y + angle_seen_2*m_x
+            t77 = m_y*t50
+            t78 = -n_y*t49 + t77
+            t79 = -t49*t75 + t50*t76
+            t80 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t81 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t82 = d_y*t80 - d_z*t81
+            t83 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t84 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t85 = d_y*t83 - d_z*t84
+            t86 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t87 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t88 = d_y*t86 - d_z*t87
+            t89 = n_x*t82 + n_y*t85 + n_z*t88
+            t90 = m_x*t82 + m_y*t85 + m_z*t88
+            t91 = -t49*t89 + t50*t90
+            t92 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t93 = -d_x*t80 + d_z*t92
+            t94 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t95 = -d_x*t83 + d_z*t94
+            t96 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t97 = -d_x*t86 + d_z*t96
+            t98 = n_x*t93 + n_y*t95 + n_z*t97
+            t99 = m_x*t93 + m_y*t95 + m_z*t97
+            t100 = -t49*t98 + t50*t99
+            t101 = d_x*t81 - d_y*t92
+            t102 = d_x*t84 - d_y*t94
+            t103 = d_x*t87 - d_y*t96
+            t104 = n_x*t101 + n_y*t102 + n_z*t103
+            t105 = m_x*t101 + m_y*t102 + m_z*t103
+            t106 = -t104*t49 + t105*t50
+            t107 = n_y*t54 + t52*t77
+            t108 = t52*(angle_along_m*n_y - angle_along_n*m_y)
+            t109 = -m_y*t57 - n_y*t58
+            t110 = t109*t61
+            t111 = t109*t68
+            t112 = -n_x*t49 + t53
+            t113 = n_z*t54 + t52*t73
+            t114 = t52*(angle_along_m*n_z - angle_along_n*m_z)
+            t115 = -m_z*t57 - n_z*t58
+            t116 = t115*t61
+            t117 = t115*t68
+            t118 = bar_speed_beyond*side
+            t119 = t50*t52
+            bar_angle_seen_1 = (kept[5]*t55 + kept[6]*(t56 + t62) + vectors[0]*(t66*(-m_x*t89 +
+                n_x*t90) + t69*t91) + vectors[1]*(t100*t69 + t66*(-m_x*t98 + n_x*t99)) +
+                vectors[2]*(t106*t69 + t66*(-m_x*t104 + n_x*t105)) + vectors[3]*(t66*(-m_x*t63 +
+                n_x*t64) + t67*t69) + vectors[4]*(t66*(-m_x*t70 + n_x*t71 - t72 + t73) + t69*t74)
+                + vectors[5]*(t66*(-m_x*t75 + n_x*t76 - t78) + t69*t79) +
+                bar_speed_beyond*(side*t56 + side*t62) + bar_value*t55)
+            bar_angle_seen_2 = (kept[5]*t107 + kept[6]*(t108 + t110) + vectors[0]*(t111*t91 +
+                t66*(-m_y*t89 + n_y*t90)) + vectors[1]*(t100*t111 + t66*(-m_y*t98 + n_y*t99)) +
+                vectors[2]*(t106*t111 + t66*(-m_y*t104 + n_y*t105)) + vectors[3]*(t111*t67 +
+                t66*(-m_y*t63 + n_y*t64 + t72 - t73)) + vectors[4]*(t111*t74 + t66*(-m_y*t70 +
+                n_y*t71)) + vectors[5]*(t111*t79 + t66*(-m_y*t75 + n_y*t76 + t112)) +
+                bar_speed_beyond*(side*t108 + side*t110) + bar_value*t107)
+            bar_angle_seen_3 = (kept[5]*t113 + kept[6]*(t114 + t116) + vectors[0]*(t117*t91 +
+                t66*(-m_z*t89 + n_z*t90)) + vectors[1]*(t100*t117 + t66*(-m_z*t98 + n_z*t99)) +
+                vectors[2]*(t106*t117 + t66*(-m_z*t104 + n_z*t105)) + vectors[3]*(t117*t67 +
+                t66*(-m_z*t63 + n_z*t64 + t78)) + vectors[4]*(t117*t74 + t66*(-m_z*t70 + n_z*t71 -
+                t112)) + vectors[5]*(t117*t79 + t66*(-m_z*t75 + n_z*t76)) +
+                bar_speed_beyond*(side*t114 + side*t116) + bar_value*t113)
+            bar_angle_along_n = kept[6]*t54 + t118*t54
+            bar_angle_along_m = kept[6]*t119 + t118*t119
+            t120 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
             t121 = d_y*t120
-            t122 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t122 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
             t123 = -t122
             t124 = d_z*t123
             t125 = t121 + t124
-            t126 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t126 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
             t127 = d_y*t126
-            t128 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t128 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
             t129 = -t128
             t130 = d_z*t129
             t131 = t127 + t130
-            t132 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t133 = d_x*t114
-            t134 = d_x*t120
-            t135 = d_x*t126
-            t136 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t137 = push*side/(t132*t132 + t136*t136)
-            t138 = vectors[2]*t137
-            t139 = d_x*t117
-            t140 = d_x*t123
-            t141 = d_x*t129
-            t142 = vectors[1]*t137
-            t143 = d_z*t114
-            t144 = d_y*t117
-            t145 = -t143 + t144
-            t146 = d_z*t120
-            t147 = d_y*t123
-            t148 = -t146 + t147
-            t149 = d_z*t126
-            t150 = d_y*t129
+            t132 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t133 = d_y*t132
+            t134 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t135 = -t134
+            t136 = d_z*t135
+            t137 = t133 + t136
+            t138 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t139 = d_x*t120
+            t140 = d_x*t126
+            t141 = d_x*t132
+            t142 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t143 = push*side/(t138*t138 + t142*t142)
+            t144 = vectors[2]*t143
+            t145 = d_x*t123
+            t146 = d_x*t129
+            t147 = d_x*t135
+            t148 = vectors[1]*t143
+            t149 = d_z*t120
+            t150 = d_y*t123
             t151 = -t149 + t150
-            t152 = vectors[0]*t137
-            t153 = -Oma_x*d_z + Oma_z*d_x
-            t154 = Oma_x*d_y - Oma_y*d_x
-            t155 = -Omb_y*t131 + Omb_z*t125 + t114*t153 + t117*t154
-            t156 = Omb_x*t131 - Omb_z*t119 + t120*t153 + t123*t154
-            t157 = -Omb_x*t125 + Omb_y*t119 + t126*t153 + t129*t154
-            t158 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t159 = -t114
-            t160 = d_x*t159
-            t161 = d_z*t158 + t160
-            t162 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t163 = -t120
-            t164 = d_x*t163
-            t165 = d_z*t162 + t164
-            t166 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t167 = -t126
-            t168 = d_x*t167
-            t169 = d_z*t166 + t168
-            t170 = d_y*t158
-            t171 = d_y*t162
-            t172 = d_y*t166
-            t173 = d_y*t159
-            t174 = d_y*t163
-            t175 = d_y*t167
-            t176 = d_x*t158
-            t177 = d_z*t159 - t176
-            t178 = d_x*t162
-            t179 = d_z*t163 - t178
-            t180 = d_x*t166
-            t181 = d_z*t167 - t180
-            t182 = Oma_y*d_z - Oma_z*d_y
-            t183 = -Omb_y*t169 + Omb_z*t165 + t154*t158 + t159*t182
-            t184 = Omb_x*t169 - Omb_z*t161 + t154*t162 + t163*t182
-            t185 = -Omb_x*t165 + Omb_y*t161 + t154*t166 + t167*t182
-            t186 = d_x*t116
-            t187 = -t158
-            t188 = d_y*t187
-            t189 = t186 + t188
-            t190 = d_x*t122
-            t191 = -t162
-            t192 = d_y*t191
-            t193 = t190 + t192
-            t194 = d_x*t128
-            t195 = -t166
-            t196 = d_y*t195
-            t197 = t194 + t196
-            t198 = d_z*t116
-            t199 = d_z*t122
-            t200 = d_z*t128
-            t201 = d_z*t187
-            t202 = d_z*t191
-            t203 = d_z*t195
-            t204 = d_y*t116
-            t205 = d_x*t187
-            t206 = -t204 + t205
-            t207 = d_y*t122
-            t208 = d_x*t191
-            t209 = -t207 + t208
-            t210 = d_y*t128
-            t211 = d_x*t195
+            t152 = d_z*t126
+            t153 = d_y*t129
+            t154 = -t152 + t153
+            t155 = d_z*t132
+            t156 = d_y*t135
+            t157 = -t155 + t156
+            t158 = vectors[0]*t143
+            t159 = -Oma_x*d_z + Oma_z*d_x
+            t160 = Oma_x*d_y - Oma_y*d_x
+            t161 = -Omb_y*t137 + Omb_z*t131 + t120*t159 + t123*t160
+            t162 = Omb_x*t137 - Omb_z*t125 + t126*t159 + t129*t160
+            t163 = -Omb_x*t131 + Omb_y*t125 + t132*t159 + t135*t160
+            t164 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t165 = -t120
+            t166 = d_x*t165
+            t167 = d_z*t164 + t166
+            t168 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t169 = -t126
+            t170 = d_x*t169
+            t171 = d_z*t168 + t170
+            t172 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t173 = -t132
+            t174 = d_x*t173
+            t175 = d_z*t172 + t174
+            t176 = d_y*t164
+            t177 = d_y*t168
+            t178 = d_y*t172
+            t179 = d_y*t165
+            t180 = d_y*t169
+            t181 = d_y*t173
+            t182 = d_x*t164
+            t183 = d_z*t165 - t182
+            t184 = d_x*t168
+            t185 = d_z*t169 - t184
+            t186 = d_x*t172
+            t187 = d_z*t173 - t186
+            t188 = Oma_y*d_z - Oma_z*d_y
+            t189 = -Omb_y*t175 + Omb_z*t171 + t160*t164 + t165*t188
+            t190 = Omb_x*t175 - Omb_z*t167 + t160*t168 + t169*t188
+            t191 = -Omb_x*t171 + Omb_y*t167 + t160*t172 + t173*t188
+            t192 = d_x*t122
+            t193 = -t164
+            t194 = d_y*t193
+            t195 = t192 + t194
+            t196 = d_x*t128
+            t197 = -t168
+            t198 = d_y*t197
+            t199 = t196 + t198
+            t200 = d_x*t134
+            t201 = -t172
+            t202 = d_y*t201
+            t203 = t200 + t202
+            t204 = d_z*t122
+            t205 = d_z*t128
+            t206 = d_z*t134
+            t207 = d_z*t193
+            t208 = d_z*t197
+            t209 = d_z*t201
+            t210 = d_y*t122
+            t211 = d_x*t193
             t212 = -t210 + t211
-            t213 = -Omb_y*t197 + Omb_z*t193 + t116*t182 + t153*t187
-            t214 = Omb_x*t197 - Omb_z*t189 + t122*t182 + t153*t191
-            t215 = -Omb_x*t193 + Omb_y*t189 + t128*t182 + t153*t195
-            t216 = t115 - t198
-            t217 = t121 - t199
-            t218 = t127 - t200
-            t219 = d_z*t158 - t133
-            t220 = d_z*t162 - t134
-            t221 = d_z*t166 - t135
-            t222 = -t170 + t186
-            t223 = -t171 + t190
-            t224 = -t172 + t194
-            t225 = t149 + t180 + t210
-            t226 = d_z*t163 + t147 + t208
-            t227 = -t124 + t174
-            t228 = d_z*t191 - t164
-            t229 = t140 - t192
-            t230 = -Omb_y*t226 + Omb_z*t225
-            t231 = Omb_x*t226 + t126*t154 + t128*t153 + t166*t182
-            t232 = -Omb_x*t225 + t123*t153 + t154*t163 + t182*t191
-            t233 = t143 + t176 + t204
-            t234 = d_z*t167 + t150 + t211
-            t235 = -t130 + t175
-            t236 = d_z*t195 - t168
-            t237 = t141 - t196
-            t238 = Omb_x*t233 - Omb_z*t234
-            t239 = Omb_y*t234 + t114*t154 + t116*t153 + t158*t182
-            t240 = -Omb_y*t233 + t129*t153 + t154*t167 + t182*t195
-            t241 = t146 + t178 + t207
-            t242 = d_z*t159 + t144 + t205
-            t243 = -t118 + t173
-            t244 = d_z*t187 - t160
-            t245 = t139 - t188
-            t246 = -Omb_x*t242 + Omb_y*t241
-            t247 = Omb_z*t242 + t120*t154 + t122*t153 + t162*t182
-            t248 = -Omb_z*t241 + t117*t153 + t154*t159 + t182*t187
-            t249 = -t241
-            t250 = -t225
-            t251 = -t233
-            t252 = touches - 0.5
-            t253 = kept_rate if kept_rate > 0.0 else -kept_rate
-            t254 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
-            t255 = -t253 + t254
-            t256 = t254 if t255 > 0.0 else t253
-            t257 = -kept_impact + t256
-            t258 = -slow + (t256 if t257 > 0.0 else kept_impact)
-            vectors[6] = (bar_angle_along_m*(m_x*t155 + m_y*t156 + m_z*t157) +
-                bar_angle_along_n*(n_x*t155 + n_y*t156 + n_z*t157) + bar_angle_seen_1*t119 +
-                bar_angle_seen_2*t125 + bar_angle_seen_3*t131 + t138*(-t132*(n_x*t133 + n_y*t134 +
-                n_z*t135) + t136*(m_x*t133 + m_y*t134 + m_z*t135)) + t142*(-t132*(-n_x*t139 -
-                n_y*t140 - n_z*t141) + t136*(-m_x*t139 - m_y*t140 - m_z*t141)) +
-                t152*(-t132*(n_x*t145 + n_y*t148 + n_z*t151) + t136*(m_x*t145 + m_y*t148 +
-                m_z*t151)))
-            vectors[7] = (bar_angle_along_m*(m_x*t183 + m_y*t184 + m_z*t185) +
-                bar_angle_along_n*(n_x*t183 + n_y*t184 + n_z*t185) + bar_angle_seen_1*t161 +
-                bar_angle_seen_2*t165 + bar_angle_seen_3*t169 + t138*(-t132*(-n_x*t173 - n_y*t174
-                - n_z*t175) + t136*(-m_x*t173 - m_y*t174 - m_z*t175)) + t142*(-t132*(n_x*t177 +
-                n_y*t179 + n_z*t181) + t136*(m_x*t177 + m_y*t179 + m_z*t181)) +
-                t152*(-t132*(n_x*t170 + n_y*t171 + n_z*t172) + t136*(m_x*t170 + m_y*t171 +
-                m_z*t172)))
-            vectors[8] = (bar_angle_along_m*(m_x*t213 + m_y*t214 + m_z*t215) +
-                bar_angle_along_n*(n_x*t213 + n_y*t214 + n_z*t215) + bar_angle_seen_1*t189 +
-                bar_angle_seen_2*t193 + bar_angle_seen_3*t197 + t138*(-t132*(n_x*t206 + n_y*t209 +
-                n_z*t212) + t136*(m_x*t206 + m_y*t209 + m_z*t212)) + t142*(-t132*(n_x*t198 +
-                n_y*t199 + n_z*t200) + t136*(m_x*t198 + m_y*t199 + m_z*t200)) +
-                t152*(-t132*(-n_x*t201 - n_y*t202 - n_z*t203) + t136*(-m_x*t201 - m_y*t202 -
-                m_z*t203)))
-            vectors[12] = (bar_angle_along_m*(m_x*t216 + m_y*t217 + m_z*t218) +
-                bar_angle_along_n*(n_x*t216 + n_y*t217 + n_z*t218))
-            vectors[13] = (bar_angle_along_m*(m_x*t219 + m_y*t220 + m_z*t221) +
-                bar_angle_along_n*(n_x*t219 + n_y*t220 + n_z*t221))
-            vectors[14] = (bar_angle_along_m*(m_x*t222 + m_y*t223 + m_z*t224) +
+            t213 = d_y*t128
+            t214 = d_x*t197
+            t215 = -t213 + t214
+            t216 = d_y*t134
+            t217 = d_x*t201
+            t218 = -t216 + t217
+            t219 = -Omb_y*t203 + Omb_z*t199 + t122*t188 + t159*t193
+            t220 = Omb_x*t203 - Omb_z*t195 + t128*t188 + t159*t197
+            t221 = -Omb_x*t199 + Omb_y*t195 + t134*t188 + t159*t201
+            t222 = t121 - t204
+            t223 = t127 - t205
+            t224 = t133 - t206
+            t225 = d_z*t164 - t139
+            t226 = d_z*t168 - t140
+            t227 = d_z*t172 - t141
+            t228 = -t176 + t192
+            t229 = -t177 + t196
+            t230 = -t178 + t200
+            t231 = t155 + t186 + t216
+            t232 = d_z*t169 + t153 + t214
+            t233 = -t130 + t180
+            t234 = d_z*t197 - t170
+            t235 = t146 - t198
+            t236 = -Omb_y*t232 + Omb_z*t231
+            t237 = Omb_x*t232 + t132*t160 + t134*t159 + t172*t188
+            t238 = -Omb_x*t231 + t129*t159 + t160*t169 + t188*t197
+            t239 = t149 + t182 + t210
+            t240 = d_z*t173 + t156 + t217
+            t241 = -t136 + t181
+            t242 = d_z*t201 - t174
+            t243 = t147 - t202
+            t244 = Omb_x*t239 - Omb_z*t240
+            t245 = Omb_y*t240 + t120*t160 + t122*t159 + t164*t188
+            t246 = -Omb_y*t239 + t135*t159 + t160*t173 + t188*t201
+            t247 = t152 + t184 + t213
+            t248 = d_z*t165 + t150 + t211
+            t249 = -t124 + t179
+            t250 = d_z*t193 - t166
+            t251 = t145 - t194
+            t252 = -Omb_x*t248 + Omb_y*t247
+            t253 = Omb_z*t248 + t126*t160 + t128*t159 + t168*t188
+            t254 = -Omb_z*t247 + t123*t159 + t160*t165 + t188*t193
+            t255 = -t247
+            t256 = -t231
+            t257 = -t239
+            t258 = touches - 0.5
+            t259 = kept_rate if kept_rate > 0.0 else -kept_rate
+            t260 = speed_beyond if speed_beyond > 0.0 else -speed_beyond
+            t261 = -t259 + t260
+            t262 = t260 if t261 > 0.0 else t259
+            t263 = -kept_impact + t262
+            t264 = -slow + (t262 if t263 > 0.0 else kept_impact)
+            vectors[6] = (bar_angle_along_m*(m_x*t161 + m_y*t162 + m_z*t163) +
+                bar_angle_along_n*(n_x*t161 + n_y*t162 + n_z*t163) + bar_angle_seen_1*t125 +
+                bar_angle_seen_2*t131 + bar_angle_seen_3*t137 + t144*(-t138*(n_x*t139 + n_y*t140 +
+                n_z*t141) + t142*(m_x*t139 + m_y*t140 + m_z*t141)) + t148*(-t138*(-n_x*t145 -
+                n_y*t146 - n_z*t147) + t142*(-m_x*t145 - m_y*t146 - m_z*t147)) +
+                t158*(-t138*(n_x*t151 + n_y*t154 + n_z*t157) + t142*(m_x*t151 + m_y*t154 +
+                m_z*t157)))
+            vectors[7] = (bar_angle_along_m*(m_x*t189 + m_y*t190 + m_z*t191) +
+                bar_angle_along_n*(n_x*t189 + n_y*t190 + n_z*t191) + bar_angle_seen_1*t167 +
+                bar_angle_seen_2*t171 + bar_angle_seen_3*t175 + t144*(-t138*(-n_x*t179 - n_y*t180
+                - n_z*t181) + t142*(-m_x*t179 - m_y*t180 - m_z*t181)) + t148*(-t138*(n_x*t183 +
+                n_y*t185 + n_z*t187) + t142*(m_x*t183 + m_y*t185 + m_z*t187)) +
+                t158*(-t138*(n_x*t176 + n_y*t177 + n_z*t178) + t142*(m_x*t176 + m_y*t177 +
+                m_z*t178)))
+            vectors[8] = (bar_angle_along_m*(m_x*t219 + m_y*t220 + m_z*t221) +
+                bar_angle_along_n*(n_x*t219 + n_y*t220 + n_z*t221) + bar_angle_seen_1*t195 +
+                bar_angle_seen_2*t199 + bar_angle_seen_3*t203 + t144*(-t138*(n_x*t212 + n_y*t215 +
+                n_z*t218) + t142*(m_x*t212 + m_y*t215 + m_z*t218)) + t148*(-t138*(n_x*t204 +
+                n_y*t205 + n_z*t206) + t142*(m_x*t204 + m_y*t205 + m_z*t206)) +
+                t158*(-t138*(-n_x*t207 - n_y*t208 - n_z*t209) + t142*(-m_x*t207 - m_y*t208 -
+                m_z*t209)))
+            vectors[12] = (bar_angle_along_m*(m_x*t222 + m_y*t223 + m_z*t224) +
                 bar_angle_along_n*(n_x*t222 + n_y*t223 + n_z*t224))
+            vectors[13] = (bar_angle_along_m*(m_x*t225 + m_y*t226 + m_z*t227) +
+                bar_angle_along_n*(n_x*t225 + n_y*t226 + n_z*t227))
+            vectors[14] = (bar_angle_along_m*(m_x*t228 + m_y*t229 + m_z*t230) +
+                bar_angle_along_n*(n_x*t228 + n_y*t229 + n_z*t230))
             kept[10] = 0.0
             kept[11] = 0.0
             kept[12] = 0.0
-            vectors[9] = (bar_angle_along_m*(m_x*t230 + m_y*t231 + m_z*t232) +
-                bar_angle_along_n*(n_x*t230 + n_y*t231 + n_z*t232) + bar_angle_seen_2*t225 +
-                bar_angle_seen_3*t226 + t138*(-t132*(n_y*t224 + n_z*t229) + t136*(m_y*t224 +
-                m_z*t229)) + t142*(-t132*(n_y*t221 + n_z*t228) + t136*(m_y*t221 + m_z*t228)) +
-                t152*(-t132*(n_y*t218 + n_z*t227) + t136*(m_y*t218 + m_z*t227)))
-            vectors[10] = (bar_angle_along_m*(m_x*t240 + m_y*t238 + m_z*t239) +
-                bar_angle_along_n*(n_x*t240 + n_y*t238 + n_z*t239) + bar_angle_seen_1*t234 +
-                bar_angle_seen_3*t233 + t138*(-t132*(n_x*t237 + n_z*t222) + t136*(m_x*t237 +
-                m_z*t222)) + t142*(-t132*(n_x*t236 + n_z*t219) + t136*(m_x*t236 + m_z*t219)) +
-                t152*(-t132*(n_x*t235 + n_z*t216) + t136*(m_x*t235 + m_z*t216)))
-            vectors[11] = (bar_angle_along_m*(m_x*t247 + m_y*t248 + m_z*t246) +
-                bar_angle_along_n*(n_x*t247 + n_y*t248 + n_z*t246) + bar_angle_seen_1*t241 +
-                bar_angle_seen_2*t242 + t138*(-t132*(n_x*t223 + n_y*t245) + t136*(m_x*t223 +
-                m_y*t245)) + t142*(-t132*(n_x*t220 + n_y*t244) + t136*(m_x*t220 + m_y*t244)) +
-                t152*(-t132*(n_x*t217 + n_y*t243) + t136*(m_x*t217 + m_y*t243)))
-            vectors[15] = (bar_angle_along_m*(m_y*t225 + m_z*t249) + bar_angle_along_n*(n_y*t225 +
-                n_z*t249))
-            vectors[16] = (bar_angle_along_m*(m_x*t250 + m_z*t233) + bar_angle_along_n*(n_x*t250 +
-                n_z*t233))
-            vectors[17] = (bar_angle_along_m*(m_x*t241 + m_y*t251) + bar_angle_along_n*(n_x*t241 +
-                n_y*t251))
+            vectors[9] = (bar_angle_along_m*(m_x*t236 + m_y*t237 + m_z*t238) +
+                bar_angle_along_n*(n_x*t236 + n_y*t237 + n_z*t238) + bar_angle_seen_2*t231 +
+                bar_angle_seen_3*t232 + t144*(-t138*(n_y*t230 + n_z*t235) + t142*(m_y*t230 +
+                m_z*t235)) + t148*(-t138*(n_y*t227 + n_z*t234) + t142*(m_y*t227 + m_z*t234)) +
+                t158*(-t138*(n_y*t224 + n_z*t233) + t142*(m_y*t224 + m_z*t233)))
+            vectors[10] = (bar_angle_along_m*(m_x*t246 + m_y*t244 + m_z*t245) +
+                bar_angle_along_n*(n_x*t246 + n_y*t244 + n_z*t245) + bar_angle_seen_1*t240 +
+                bar_angle_seen_3*t239 + t144*(-t138*(n_x*t243 + n_z*t228) + t142*(m_x*t243 +
+                m_z*t228)) + t148*(-t138*(n_x*t242 + n_z*t225) + t142*(m_x*t242 + m_z*t225)) +
+                t158*(-t138*(n_x*t241 + n_z*t222) + t142*(m_x*t241 + m_z*t222)))
+            vectors[11] = (bar_angle_along_m*(m_x*t253 + m_y*t254 + m_z*t252) +
+                bar_angle_along_n*(n_x*t253 + n_y*t254 + n_z*t252) + bar_angle_seen_1*t247 +
+                bar_angle_seen_2*t248 + t144*(-t138*(n_x*t229 + n_y*t251) + t142*(m_x*t229 +
+                m_y*t251)) + t148*(-t138*(n_x*t226 + n_y*t250) + t142*(m_x*t226 + m_y*t250)) +
+                t158*(-t138*(n_x*t223 + n_y*t249) + t142*(m_x*t223 + m_y*t249)))
+            vectors[15] = (bar_angle_along_m*(m_y*t231 + m_z*t255) + bar_angle_along_n*(n_y*t231 +
+                n_z*t255))
+            vectors[16] = (bar_angle_along_m*(m_x*t256 + m_z*t239) + bar_angle_along_n*(n_x*t256 +
+                n_z*t239))
+            vectors[17] = (bar_angle_along_m*(m_x*t247 + m_y*t257) + bar_angle_along_n*(n_x*t247 +
+                n_y*t257))
             kept[13] = 0.0
             kept[14] = 0.0
             kept[15] = 0.0
             kept[0] = 0.0
-            kept[1] = (kept[7]*((((0 if t255 > 0.0 else (1 if kept_rate > 0.0 else -1)) if t257 >
-                0.0 else 0) if t258 > 0.0 else 0) if t252 > 0.0 else 0))
-            kept[2] = kept[7]*(((0 if t257 > 0.0 else 1) if t258 > 0.0 else 0) if t252 > 0.0 else 0)
+            kept[1] = (kept[7]*((((0 if t261 > 0.0 else (1 if kept_rate > 0.0 else -1)) if t263 >
+                0.0 else 0) if t264 > 0.0 else 0) if t258 > 0.0 else 0))
+            kept[2] = kept[7]*(((0 if t263 > 0.0 else 1) if t264 > 0.0 else 0) if t258 > 0.0 else 0)
             kept[3] = 0.0
             kept[4] = 0.0
             vectors[18] = 0.0
