@@ -46,7 +46,7 @@ def matrix(system: System, state: State, what: str, *, mass: float, damping: flo
     state.set_coefficients(c_mass=mass, c_damping=damping, c_stiffness=stiffness, c_geo=1.0,
                            c_constraint=constraint)
     evaluate(system, state, TANGENT, TANGENT, what)
-    sum_matrices(system, state, state.residual)
+    sum_matrices(system, state, state.residual, False)
     return assembled(system, state)
 
 

@@ -33,16 +33,16 @@ def element_matrix(system, state, k):
 
 
 @compiled
-def condensed_matrix(system, state, k):
-    """The same with internal unknowns eliminated, which the second refresh does."""
+def condensed_matrix(system, state, k, evaluated):
+    """The same, `evaluated`, with internal unknowns eliminated, which the second refresh does."""
     start, width, first, end = (system.summands[k, 0], system.summands[k, 1],
                                 system.summands[k, 8], system.summands[k, 9])
     if first == end:
-        return element_matrix(system, state, k)
+        return evaluated
     own = at(pointer_to(state.condensed), start)
     if state.control.refreshed == 2:
         for i in range(width * width):
-            own[i] = state.J[start + i]
+            own[i] = evaluated[i]
         left = np.ones(width)       # zero for unknowns that are eliminated
         rows, blocks = np.empty(LANES * width), np.empty(2 * BLOCK)
         for j in range(first, end):

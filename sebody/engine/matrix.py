@@ -30,34 +30,20 @@ THIN = 1e-6             # smallest moment of inertia that scales its axis, relat
 
 
 @compiled
-def sum_matrices(system, state, forces):
-    """Sum the element matrices, which are not changed; links need the forces, too."""
+def sum_matrices(system, state, forces, condensed):
+    """Sum the element matrices, which are not changed; links need the forces, too.
+
+    `condensed` tells whether their internal unknowns are to be eliminated.
+    """
     if system.routines[3] != 0:
         call_share(system.routines[3], system, state, SHARE_SUM, 0)
     else:
         clear_matrix(system, state)
         for k in range(system.summands.shape[0]):
-            sum_element(system, state, k, element_matrix(system, state, k),
-                        pointer_to(state.rotated_matrix))
-    _add_of_links(system, state, forces)
-
-
-@compiled
-def sum_condensed(system, state, forces):
-    """Sum the element matrices with their internal unknowns eliminated."""
-    if system.routines[3] != 0:
-        call_share(system.routines[3], system, state, SHARE_SUM, 0)
-    else:
-        clear_matrix(system, state)
-        for k in range(system.summands.shape[0]):
-            sum_element(system, state, k, condensed_matrix(system, state, k),
-                        pointer_to(state.rotated_matrix))
-    _add_of_links(system, state, forces)
-
-
-@compiled
-def _add_of_links(system, state, forces):
-    """Add what rigid links add as they rotate."""
+            own = element_matrix(system, state, k)
+            if condensed:
+                own = condensed_matrix(system, state, k, own)
+            sum_element(system, state, k, own, pointer_to(state.rotated_matrix))
     if system.links.elements.shape[0] > 0:
         add_second_order(system.links, state.coefficients[C_STIFFNESS], state.q, state.R, state.T,
                          state.turns, forces, state.matrix)
@@ -89,8 +75,9 @@ def sum_columns(system, state, first, end, part, condensed, J):
     last = system.part_summands.size - 1
     for k in range(system.part_summands[part],
                    system.part_summands[part + 1] if part < last else system.summands.shape[0]):
-        own = (condensed_matrix(system, state, k) if condensed else
-               element_matrix(system, state, k))
+        own = element_matrix(system, state, k)
+        if condensed:
+            own = condensed_matrix(system, state, k, own)
         sum_element(system, state, k, own, J)
 
 
@@ -219,12 +206,9 @@ def refactorize(system, state, wanted, dense):
     regularized = system.regularized[0] == 1
     condensed = wanted == ROTATED and are_condensed(system, state)
     state.control.condensed = condensed
-    if condensed:
-        sum_condensed(system, state, state.forces)
-    else:
-        sum_matrices(system, state, state.forces)
-        if wanted == ROTATED:           # the next one condenses
-            state.control.refreshed = 1
+    sum_matrices(system, state, state.forces, condensed)
+    if wanted == ROTATED and not condensed:     # the next one condenses
+        state.control.refreshed = 1
     if wanted == EVALUATED:
         equilibrate(system, state)
     state.control.regularized = 0
@@ -244,7 +228,7 @@ def refactorize(system, state, wanted, dense):
     state.control.condensed = 0
     state.control.pivoted = 0 if done else 1
     if not done:
-        sum_matrices(system, state, state.forces)
+        sum_matrices(system, state, state.forces, False)
         if regularized:
             regularize(system, state, REGULARIZATION)
     elif regularized and wanted == EVALUATED:

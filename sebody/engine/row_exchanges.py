@@ -108,7 +108,7 @@ def _factorize(system, state, exchanges):
 def _of_masses(system, state, exchanges):
     """Factors of masses and constraints; of least squares if these are singular."""
     n = system.diagonal.size
-    sum_matrices(system, state, state.forces)
+    sum_matrices(system, state, state.forces, False)
     _scale_masses(system, state, exchanges.scale)
     exchanges.kind[0] = OF_MASSES
     outcome = _scaled(system, state, exchanges, False)

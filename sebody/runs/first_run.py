@@ -70,7 +70,7 @@ LOOP = {        # callees of the loop, which waits for them
 }
 PARTS = {name: part for name, part in LOOP.items() if part.function} | {
     "loop": Part(loop.advance, "system state record scheme whole whole flag", 3.6, tuple(LOOP)),
-    "sums": Part(matrix.sum_matrices, "system state vector", 1.4),
+    "sums": Part(matrix.sum_matrices, "system state vector flag", 1.4),
     "matrix": Part(matrix.refactorize, "system state whole flag", 3.4, ("sums",), compile_routine),
     "restart": Part(restart.restart, "system state number flag", 2.0, ("solution",),
                     compile_routine),

@@ -66,7 +66,7 @@ def measure(name: str, pairs: int) -> dict:
     found = Exchanges.of(n, stored)
     while exchange(system, state, found) == ROOM:
         found = Exchanges.of(n, stored, int(found.kind[1]))
-    sum_matrices(system, state, state.residual)         # a singular one was regularized
+    sum_matrices(system, state, state.residual, False)      # a singular one was regularized
     exchange(system, state, found)
 
     def gathered() -> csc_matrix:

@@ -40,7 +40,7 @@ def arm(order: int = 1) -> Model:
 def solution(run: Simulation, refreshed: int) -> tuple[np.ndarray, np.ndarray]:
     """The correction of a refreshed matrix, and what SciPy finds with the sum of all matrices."""
     system, state, n = run.system, run.state, run.numbering.free
-    sum_matrices(system, state, state.forces)
+    sum_matrices(system, state, state.forces, False)
     kept = (system.rows < n) & (system.columns < n)
     matrix = csc_matrix((state.matrix[:-1][kept], (system.rows[kept], system.columns[kept])),
                         shape=(n, n))

@@ -88,7 +88,7 @@ def test_a_solution_in_parts_is_that_of_scipy():
     """The corrections that threads find, against a sparse solution of the matrix they summed."""
     run = Simulation(tree(), 0.01, threads=2).run_to(0.05)
     system, state, n = run.system, run.state, run.numbering.free
-    sum_matrices(system, state, state.forces)
+    sum_matrices(system, state, state.forces, False)
     kept = (system.rows < n) & (system.columns < n)
     entries = state.matrix[:-1][kept]
     matrix = csc_matrix((entries, (system.rows[kept], system.columns[kept])), shape=(n, n))
@@ -223,10 +223,10 @@ def test_helpers_leave_other_states_alone():
     other.J[:] = np.sin(np.arange(other.J.size))
     expected = allocate(model, alone.system, alone.numbering, 0.01, False)
     expected.J[:] = other.J
-    sum_matrices(alone.system, expected, expected.forces)
+    sum_matrices(alone.system, expected, expected.forces, False)
 
     def look(share):
-        sum_matrices(run.system, other, other.forces)
+        sum_matrices(run.system, other, other.forces, False)
         assert np.array_equal(other.matrix, expected.matrix)
     assert np.array_equal(run.run_to(0.1, look).rows.all(), whole)
 

@@ -13,7 +13,7 @@ from sebody.compiler.decorators import compiled, in_lanes_of
 from sebody.compiler.inside.lanes import some, spread, where
 from sebody.contract.counts import LANES
 from sebody.contract.layout import C_MASS, OK, TANGENT
-from sebody.engine import elimination
+from sebody.engine import condensation, elimination
 from sebody.engine.arrays import Arrays
 from sebody.engine.elimination import BLOCK, SMALL_PIVOT
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
@@ -57,7 +57,7 @@ def refactorize(system, state, together):
         _evaluate_bodies(system, state, together, evaluated)
     copy(state.frames, own.frames)
     run_kernels(TANGENT, system.first_joint[0], system.address.size, system, own)
-    sum_matrices(system, own, state.forces)
+    sum_matrices(system, own, state.forces, False)
     if some(evaluated):
         _equilibrate(system, own, evaluated)
     elimination.eliminate_columns(0, system.block_diagonal.size, system, own, False,
@@ -113,6 +113,12 @@ def _equilibrate(system, state, evaluated):
         size = max(system.magnitude[i], abs(state.q[i])) * state.weight[i]
         floor += where(system.magnitude[i] > 0.0, size * size, zero)
     state.clock.floor = where(evaluated, ROUNDING * math.sqrt(floor), state.clock.floor)
+
+
+@in_lanes_of(condensation.condensed_matrix)
+def condensed_matrix(system, state, k, evaluated):
+    """The matrix as it was evaluated: in lanes none is condensed."""
+    return evaluated
 
 
 @in_lanes_of(elimination.invert_block)
