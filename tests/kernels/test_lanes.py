@@ -1,8 +1,10 @@
 """Products and maps of rotations in lanes against those of each member's numbers."""
 
 import gc
+import math
 import weakref
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -353,3 +355,44 @@ def test_frames_of_members_are_those_of_each_alone():
             if statuses[k] == 0:
                 np.testing.assert_allclose(found[part], expected[part], atol=1e-13)
     assert {(5, 2), (5, 3)} <= set(refused) and len(refused) < 6
+
+
+@compiled
+def sines_of(given):
+    """Sines in the place of the second row, and cosines in that of the third."""
+    for k in range(given.rows.shape[1]):
+        x = given.rows[0, k]
+        given.rows[1, k], given.rows[2, k] = math.sin(x), math.cos(x)
+
+
+def sines_in_lanes(angles: np.ndarray) -> np.ndarray:
+    """Sines and cosines of angles, eight at a time."""
+    nothing = np.zeros(1, dtype=np.int64)
+    given = Columns(nothing, empty(3, len(angles) // MEMBERS), nothing)
+    numbers(given.rows)[0] = angles.reshape(-1, MEMBERS)
+    sines_of(given)
+    return numbers(given.rows)[1:].reshape(2, -1).copy()
+
+
+def test_sines_and_cosines_are_those_of_mpmath():
+    """Small and large angles, and those next to multiples of pi/2, where digits cancel."""
+    rng = np.random.default_rng(3)
+    near = np.round(rng.uniform(-6e5, 6e5, 200)) * (np.pi / 2)
+    angles = np.concatenate([rng.uniform(-4, 4, 400), rng.uniform(-1e6, 1e6, 200), near,
+                             np.nextafter(near, 0), 10.0 ** rng.uniform(-300, 15, 196),
+                             [0.0, np.pi / 4, 355.0, 1e22]])
+    found = sines_in_lanes(angles)
+    for x, *both in zip(angles, *found, strict=True):
+        for got, exact in zip(both, (mpmath.sin(x), mpmath.cos(x)), strict=True):
+            assert abs(mpmath.mpf(got) - exact) <= 2 * EPS * max(abs(exact), 1e-16), x
+
+
+def test_a_sine_does_not_depend_on_its_neighbours():
+    angles = np.array([0.3, -2.0, 7.0, 1e5, -40.0, 1.5, 3.1, -0.0])
+    alone = sines_in_lanes(angles)
+    for others in (np.inf, np.nan, 1e300):
+        mixed = np.where(np.arange(MEMBERS) % 2, others, angles)
+        found = sines_in_lanes(mixed)
+        assert np.array_equal(found[:, ::2], alone[:, ::2])
+        expected = np.full(MEMBERS // 2, np.sin(others) if others == 1e300 else np.nan)
+        assert np.allclose(found[0, 1::2], expected, rtol=EPS, equal_nan=True)

@@ -313,7 +313,7 @@ def _each(function: Callable) -> Callable:
     return implement
 
 
-for _function in (math.sin, math.cos, math.atan, math.floor):
+for _function in (math.atan, math.floor):
     overload(_function)(_each(_function))
 
 

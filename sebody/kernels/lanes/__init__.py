@@ -2,3 +2,7 @@
 
 `sebody.engine.lanes` imports these modules, which puts their functions in place.
 """
+
+from sebody.kernels.lanes import sines
+
+__all__ = ["sines"]
