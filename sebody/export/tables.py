@@ -6,7 +6,7 @@ from hashlib import sha256
 import numpy as np
 
 from sebody.contract.layout import RECORD
-from sebody.engine import control_data, sparse_lu
+from sebody.engine import control_data, kept_factors, sparse_lu
 from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
 from sebody.export.prepared import Prepared
 
@@ -26,6 +26,7 @@ def model_h(model: Prepared) -> str:
         "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
         "AT_A": image.at(state.a), "AT_Q": image.at(state.q), "AT_WEIGHT": image.at(state.weight),
         "AT_MULTIPLIERS": image.at(system.is_multiplier), "UNKNOWNS": system.diagonal.size,
+        "AT_FACTORS_VALID": image.at(state.spare, kept_factors.VALID), "KEEPS": state.spare.size,
         "DERIVATIVES": int(model.differentiable), "RECORD_PARTS": record.at.size,
         "DENSE": int(run.dense), "ASKED": ASKED, "EVALUATED": EVALUATED, "ROOM": sparse_lu.ROOM,
         "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),

@@ -139,7 +139,7 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     scale = np.full(held, size)
     scale[:dimension * len(body.position_nodes)] = 1.0
     rigid = body.rigid_modes_about(body.coordinates.mean(axis=0))
-    loads = ties.gather(integrals.loads())
+    loads = ties.gather(integrals.loads() * integrals.isotropic())
     loads[boundary.held] = 0.0
     answers, on_means = interior.answer(loads)
     above = np.zeros((len(on_means), len(component.omega_squared)))

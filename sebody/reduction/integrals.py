@@ -68,6 +68,15 @@ class MassIntegrals:
             forces = forces + self._field.rotation.T @ turned.reshape(-1, turned.shape[2])
         return forces
 
+    def isotropic(self) -> NDArray:
+        """Factors of the loads that make every direction count alike, in any axes of the body.
+
+        A product of spins about two axes stands for two entries of a symmetric tensor.
+        """
+        spins = [1.0 if k == l else np.sqrt(2.0)
+                 for k in range(self.angles) for l in range(k, self.angles)]  # noqa: E741
+        return np.array([1.0] * (self.dimension + self.angles) + spins)
+
     def integrals(self, basis: NDArray) -> dict[str, NDArray]:
         """All integrals but Mbar's stiffness companions, by the names of `InertiaInvariants`."""
         shapes = self.shapes(basis)

@@ -45,6 +45,9 @@ def test_tolerances_with_units(text, units, expected):
 @pytest.mark.parametrize(("given", "message"), [
     ({"tolerance": "2 furlong"}, "the unit 'furlong' is unknown: give one of m, dm"),
     ({"tolerance": "much"}, "tolerance is 'much': give a number, such as 1e-3, or one with a unit"),
+    ({"tolerance": "1..2"}, "tolerance is '1..2': give a number, such as 1e-3, or one with a unit"),
+    ({"tolerance": "-1"}, "tolerance is -1.0: give a finite number > 0 and < 1"),
+    ({"tolerance": "-1 mm"}, "tolerance is -0.001: give a positive number"),
     ({"tolerance": "2mm", "quantities": "frequency 1"}, "tolerances of frequencies are relative"),
     ({"quantities": "tip.position mean"}, "'position mean' is unknown: did you mean"),
     ({"quantities": "tip.position < fast Hz"}, "frequency is 'fast': give a number above 0"),
