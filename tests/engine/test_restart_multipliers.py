@@ -47,7 +47,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
 
 
 @pytest.mark.parametrize("how", [{"h": 0.05}, {"h": 0.0314}, {"h": 0.5, "tolerance": Tolerance(
-    1e-6)}, {"h": 0.05, "scheme": generalized_alpha(index=2, tolerance=1e-11)}], ids=["fixed", "off the grid", "variable", "index 2"])
+    1e-6)}, {"h": 0.05, "scheme": generalized_alpha(index=2, tolerance=1e-11)}],
+    ids=["fixed", "off the grid", "variable", "index 2"])
 def test_forces_that_depend_on_multipliers(how, tmp_path, monkeypatch):
     """A weight slides down a slope with ``mu sqrt(N^2 + N0^2)`` against it, N by a multiplier.
 
