@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from sebody import Model
-from sebody.analysis import Ensemble
+from sebody.analysis import Ensemble, gradient
 from sebody.fem import Section, rectangle, straight_beam
 from sebody.gradients.parameters import columns_of
 from sebody.model import profiles
@@ -16,6 +16,7 @@ from sebody.runs.schemes import generalized_alpha
 TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
 SHIFT = np.array([3.0, -1.0, 2.0])
 X, Y, Z = TURN.T                                            # axes of the scenes
+EXACT = generalized_alpha(tolerance=1e-13)
 STEPS = 1, -1, 2, -2, 3, -3
 WEIGHTS = np.array([45, -45, -9, 9, 1, -1]) / 60           # of differences of the sixth order
 
@@ -243,7 +244,7 @@ def chain(links):
 
 def differences(model, h, t_end, outputs, parameters, relative=1e-3, scheme=None):
     """Derivatives by differences of the sixth order of runs."""
-    ensemble = Ensemble(model, h, scheme or generalized_alpha(tolerance=1e-13))
+    ensemble = Ensemble(model, h, scheme or EXACT)
     columns = []
     for column in columns_of(model, parameters):
         base = np.array(column.handle.base, dtype=float)
@@ -255,3 +256,15 @@ def differences(model, h, t_end, outputs, parameters, relative=1e-3, scheme=None
         values = np.concatenate([found[name].reshape(6, -1) for name in outputs], axis=1)
         columns.append(WEIGHTS @ values / step)
     return np.array(columns).T
+
+
+def rows(matrix):
+    """Largest entry of each row."""
+    return np.maximum(np.abs(matrix).max(axis=1, keepdims=True), 1e-300)
+
+
+def both(model, h, t_end, objectives, parameters):
+    """Gradient by both recursions, and how far they differ."""
+    one, other = (gradient(model, h, t_end, objectives, parameters, mode, scheme=EXACT)
+                  for mode in ("adjoint", "forward"))
+    return one, float((np.abs(one.matrix - other.matrix) / rows(other.matrix)).max())

@@ -28,8 +28,8 @@ from sebody.engine.control_data import (
     STOP,
     Control,
 )
+from sebody.model.control_order import continuous, order, sampled, signals
 from sebody.model.control_parts import Controller, Sensor
-from sebody.model.controllers import continuous, order, sampled, signals
 from sebody.model.mechanism import Mechanism
 
 

@@ -11,8 +11,8 @@ from typing import NamedTuple
 from sebody.contract.layout import INPUT_NUMBERS
 from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel
+from sebody.model.control_order import actuators, sampled, signals
 from sebody.model.control_parts import Controller, Sensor
-from sebody.model.controllers import actuators, sampled, signals
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 

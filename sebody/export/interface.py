@@ -16,7 +16,7 @@ from sebody.engine.system import System
 from sebody.errors import InputError
 from sebody.export.image import Image
 from sebody.kernels.loader import element_kernel
-from sebody.model.controllers import continuous, sampled
+from sebody.model.control_order import continuous, sampled
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model

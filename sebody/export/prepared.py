@@ -26,7 +26,7 @@ from sebody.export.linking import Part
 from sebody.export.outputs import Quantities
 from sebody.export.quantities import Outputs
 from sebody.kernels.loader import element_kernel_name
-from sebody.model.controllers import sampled
+from sebody.model.control_order import sampled
 from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.results.units import unit

@@ -1,4 +1,4 @@
-"""Sensors and controllers of a model."""
+"""Controllers of a model."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from sebody import inputs as given
 from sebody.control.law import Law
 from sebody.errors import InputError
-from sebody.model.arguments import dof_block, known
 from sebody.model.continuous import law_element
-from sebody.model.control_parts import Controller, Sensor
+from sebody.model.control_order import actuators, order
+from sebody.model.control_parts import MOST_DELAY, Controller
 from sebody.model.functions import (
     CONTROL,
     LAW,
@@ -22,61 +22,8 @@ from sebody.model.functions import (
     compiled_law,
 )
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Node
+from sebody.model.sensors import check_new
 from sebody.spelling import offered
-
-MOST_DELAY = 10_000_000
-
-
-def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None, delay: int = 0,
-           bias: float = 0.0, noise: float = 0.0, seed: int = 0, axes: Node | str | None = None
-           ) -> Sensor:
-    """Measure a quantity, one number, for controllers.
-
-    Parameters
-    ----------
-    name : str
-        Its name among controllers' inputs; results have what it gave as ``<name>.value``.
-    quantity : str
-        A quantity of a result, or a component: ``"tip.position.y"``, ``"hinge.angle"``,
-        ``"beam.modes.0"``, ``"hinge.local_force.x"``. Motion of nodes, modes and angles of joints
-        is read in compiled code; for anything else the run returns to Python at every sample,
-        which takes about a millisecond.
-    rate : float, optional
-        Samples for each unit of time, between which the value holds; by default it is read
-        whenever a controller that has it among its inputs is called.
-    delay : int
-        Samples by which the value is late; needs a rate.
-    bias : float
-        Added to the quantity.
-    noise : float
-        Standard deviation of normal noise, independent from sample to sample.
-    seed : int
-        Of the noise: the same seed gives the same numbers.
-    axes : Node or str, optional
-        A node with whose axes a vector turns, of which the quantity is a component: those of space
-        at the start. By default vectors are in global axes.
-
-    Raises
-    ------
-    InputError
-        A name that is taken, or numbers that make no sense. Whether there is such a quantity is
-        found when a run begins.
-    """
-    where = f"sensor {given.name(name, 'name of a sensor')!r}"
-    _check_new(model, name, where)
-    given.name(quantity, f"{where}: quantity")
-    period = 0.0 if rate is None else 1.0 / given.number(rate, f"{where}: rate", above=0.0)
-    delay = given.integer(delay, f"{where}: delay", least=0, most=MOST_DELAY)
-    if delay and not period:
-        raise InputError(f"{where} has a delay of {delay} samples and no rate: give rate=, or the "
-                         "delay to the controller")
-    made = Sensor(name, quantity, period, delay, given.number(bias, f"{where}: bias"),
-                  given.number(noise, f"{where}: noise", least=0.0),
-                  given.integer(seed, f"{where}: seed", least=0, most=2**62),
-                  _axes(model, where, quantity, axes))
-    model.sensors[name] = made
-    return made
 
 
 def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
@@ -129,7 +76,7 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
         read.
     """
     where = f"controller {given.name(name, 'name of a controller')!r}"
-    _check_new(model, name, where)
+    check_new(model, name, where)
     ins = _names(inputs, f"inputs of {where}", least=0)
     outs = _names(outputs, f"outputs of {where}", least=1)
     delay = given.number(delay, f"{where}: delay", least=0, below=MOST_DELAY)
@@ -206,77 +153,6 @@ def _own_states(where: str, states: NDArray, own: NDArray) -> NDArray:
     return states if states.size else own
 
 
-def sampled(model: Mechanism) -> list[Controller]:
-    """Controllers that are called at samples."""
-    return [one for one in model.controllers.values() if one.period]
-
-
-def continuous(model: Mechanism) -> list[Controller]:
-    """Controllers in the equations of motion."""
-    return [one for one in model.controllers.values() if not one.period]
-
-
-def order(model: Mechanism) -> list[Controller]:
-    """Controllers in the order in which they are called in a sample.
-
-    One that gives another a signal comes first, unless the signal is delayed.
-
-    Raises
-    ------
-    InputError
-        Some wait for each other: an algebraic loop.
-    """
-    of = {signal: one for one in sampled(model) if not one.delay
-          for signal in one.outputs}
-    ordered: list[Controller] = []
-    path: list[Controller] = []
-
-    def visit(one: Controller) -> None:
-        if one in ordered:
-            return
-        if one in path:
-            names = [p.name for p in path[path.index(one):]] + [one.name]
-            raise InputError(f"algebraic loop: controllers {' -> '.join(names)} wait for each "
-                             "other's signals in the same sample; give one of them delay=1")
-        path.append(one)
-        for signal in one.inputs:
-            if signal in of and not _is_actuator(model, signal):
-                visit(of[signal])
-        path.pop()
-        ordered.append(one)
-    for one in sampled(model):
-        visit(one)
-    return ordered
-
-
-def signals(model: Mechanism) -> list[str]:
-    """Outputs of controllers that are no actuators."""
-    return list(dict.fromkeys(name for one in model.controllers.values() for name in one.outputs
-                              if not _is_actuator(model, name)))
-
-
-def actuators(model: Mechanism) -> dict[str, object]:
-    """Loads that are inputs, by name."""
-    return {load.name: load for load in model.loads
-            if load.time_function is not None and load.time_function.is_input}
-
-
-def _axes(model: Mechanism, where: str, quantity: str, axes: Node | str | None) -> str:
-    """Name of the node in whose axes a component is measured."""
-    if axes is None:
-        return ""
-    node = known(model, axes)
-    dof_block(node, "rotation")
-    if quantity.rpartition(".")[2] not in "xyz"[:model.dimension] or "." not in quantity:
-        raise InputError(f"{where} has axes and measures {quantity!r}: name a component of a "
-                         "vector, such as 'tip.acceleration.x'")
-    return node.name
-
-
-def _is_actuator(model: Mechanism, name: str) -> bool:
-    return name in actuators(model)
-
-
 def _check_written(model: Mechanism, name: str, where: str, outs: tuple[str, ...]) -> None:
     """Refuse outputs that something else sets, or that are no inputs."""
     for one in model.controllers.values():
@@ -291,11 +167,6 @@ def _check_written(model: Mechanism, name: str, where: str, outs: tuple[str, ...
                              "an actuator, " + offered(out, known, "there are", "there are none"))
         if out in model.sensors:
             raise InputError(f"{where}: output {out!r} is a sensor: name an actuator, or a signal")
-
-
-def _check_new(model: Mechanism, name: str, where: str) -> None:
-    if name in model.sensors or name in model.controllers:
-        raise InputError(f"{where}: the name is taken by a sensor or controller; give another one")
 
 
 def _names(wanted: Iterable[str], what: str, least: int) -> tuple[str, ...]:

@@ -19,6 +19,7 @@ from sebody.model import (
     joints,
     loads,
     nodes,
+    sensors,
     springs,
 )
 from sebody.model.atomic import atomic
@@ -90,7 +91,7 @@ class Model(Mechanism):
     gravity = atomic(loads.gravity)
 
     actuator = atomic(actuators.actuator)
-    sensor = atomic(controllers.sensor)
+    sensor = atomic(sensors.sensor)
     controller = atomic(controllers.controller)
 
     spring = atomic(springs.spring)

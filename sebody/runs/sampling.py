@@ -19,8 +19,8 @@ from sebody.engine.control_data import (
 from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
 from sebody.errors import InputError
+from sebody.model.control_order import continuous, sampled
 from sebody.model.control_parts import Sensor
-from sebody.model.controllers import continuous, sampled
 from sebody.model.mechanism import Mechanism
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
