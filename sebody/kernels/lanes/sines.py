@@ -1,7 +1,7 @@
 """Sine and cosine of eight angles at a time; with one angle they share most instructions.
 
 The angle less the nearest multiple of pi/2, which is subtracted in three parts, by polynomials. So
-numbers of a member are those of its own angle alone; they are within two units in the last place,
+numbers of a member are those of its own angle alone. They are within two units in the last place,
 as those of the standard library, which makes one angle at a time, are within one.
 """
 
