@@ -2,6 +2,7 @@
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import (
+    CONTACT,
     FINEST,
     GAP,
     NO_START,
@@ -16,6 +17,9 @@ from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction
 
 MUCH = 1.0          # coefficient of friction above which a rod may jam before it slides
+WITHOUT_MASS = ("The model has motions without mass, such as those of MacNeal's bodies, whose "
+                "rates jump in contact however short steps are: give the node in contact a mass by "
+                "rigid_body, or reduce its body by another method, such as rubin")
 KEPT = "results up to this time are kept"
 
 
@@ -35,8 +39,10 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     variable = state.control.adaptive == 1
     shortest = state.clock.chosen if variable else state.clock.step / FINEST
     remedy = "a larger tolerance" if variable else "a smaller step"
-    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
-            f"Use {remedy}, check the loads, or split the body into more superelements"
+    even = f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
+    if reason == CONTACT and system.massless[0] == 1:
+        return even + WITHOUT_MASS
+    return (f"{even}Use {remedy}, check the loads, or split the body into more superelements"
             + _jammed(model, numbering, state))
 
 

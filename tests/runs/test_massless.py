@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, Simulation, generalized_alpha, ramp, simulate
+from sebody import Model, Simulation, SimulationError, generalized_alpha, plane, ramp, simulate
 from sebody.fem import Section, straight_beam
 from sebody.reduction import reduce
 
@@ -113,3 +113,27 @@ def test_no_constraint_is_redundant_for_want_of_mass():
         model.gravity((1.0, -9.0, 0.0))
         start = Simulation(model, STEP).start
         assert start.redundant == ()
+
+
+def meeting(method="macneal"):
+    """On a hinge, its end on a hard plane."""
+    model, first = bar(1.0, 1.0, 1.0, np.eye(3), method)
+    model.revolute(first, AXIS)
+    up = np.array([0.1, 1.0, 0.2]) / np.linalg.norm([0.1, 1.0, 0.2])
+    model.contact("b", on=plane(up, np.array([0.8, 0.4, 0.3]) - 0.049 * up), radius=0.05,
+                  stiffness=3e6, at_speed=1.0)
+    return model
+
+
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")    # hard contact, at this step
+def test_a_contact_without_mass_is_told_what_helps():
+    """Both remedies of the message do, and give one motion."""
+    with pytest.raises(SimulationError, match=r"^stopped at .* give the node in contact a mass by "
+                                              "rigid_body, or .* another method, such as rubin$"):
+        simulate(meeting(), STEP, 0.02)
+    model = meeting()
+    model.rigid_body("lump", "b", 1e-2, 1e-5 * np.eye(3))
+    ends = [simulate(one, STEP, 0.1)["b.position"][-1] for one in (model, meeting("rubin"))]
+    moved = np.linalg.norm(ends[0] - (0.8, 0.4, 0.3))
+    # they bounce: a mass of 1 % of the bar changes that by some percent
+    assert moved > 1e-3 and np.linalg.norm(ends[0] - ends[1]) < 0.1 * moved
