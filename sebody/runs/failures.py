@@ -18,7 +18,7 @@ from sebody.runs.redundancy import contradiction
 
 MUCH = 1.0          # coefficient of friction above which a rod may jam before it slides
 WITHOUT_MASS = ("The model has motions without mass, such as those of MacNeal's bodies, whose "
-                "rates jump in contact however short steps are: give the node in contact a mass by "
+                "rates jump in contact: give the node in contact a mass by "
                 "rigid_body, or reduce its body by another method, such as rubin")
 KEPT = "results up to this time are kept"
 
