@@ -2,7 +2,6 @@
 
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import (
-    CONTACT,
     FINEST,
     GAP,
     NO_START,
@@ -17,9 +16,9 @@ from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction
 
 MUCH = 1.0          # coefficient of friction above which a rod may jam before it slides
-WITHOUT_MASS = ("The model has motions without mass, such as those of MacNeal's bodies, whose "
-                "rates jump in contact: give the node in contact a mass by "
-                "rigid_body, or reduce its body by another method, such as rubin")
+WITHOUT_MASS = ("The model has motions without mass, such as those of MacNeal's bodies, which jump "
+                "where loads or contacts begin: give their nodes a mass by rigid_body, reduce "
+                "these bodies by another method, such as rubin, or use")
 KEPT = "results up to this time are kept"
 
 
@@ -38,12 +37,13 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
                 "at this time")
     variable = state.control.adaptive == 1
     shortest = state.clock.chosen if variable else state.clock.step / FINEST
-    remedy = "a larger tolerance" if variable else "a smaller step"
-    even = f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
-    if reason == CONTACT and system.massless[0] == 1:
-        return even + WITHOUT_MASS
-    return (f"{even}Use {remedy}, check the loads, or split the body into more superelements"
-            + _jammed(model, numbering, state))
+    if system.massless[0]:      # rates of what jumps are larger in shorter steps
+        remedy = f"{WITHOUT_MASS} {'a larger tolerance' if variable else 'another step'}"
+    else:
+        remedy = (f"Use {'a larger tolerance' if variable else 'a smaller step'}, check the loads, "
+                  "or split the body into more superelements")
+    return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
+            f"{remedy}{_jammed(model, numbering, state)}")
 
 
 def _jammed(model: Model, numbering: Numbering, state: State) -> str:
