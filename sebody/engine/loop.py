@@ -178,6 +178,7 @@ def _evaluate(system, state, scheme, wanted, mixed):
         status = take_rates(system, state)
         if status != OK:
             return status
+        to_body_axes(system, state.frames, state.constraint_residuals, False)
     to_body_axes(system, state.frames, state.residual, False)
     return OK
 

@@ -3,9 +3,15 @@
 import numpy as np
 import pytest
 from helpers import order
+from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Simulation, generalized_alpha, hht
+from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha, hht, simulate
+from sebody.analysis import Ensemble, final
 from sebody.assembly.build import DENSE_LIMIT
+from sebody.compiler.choice import why_no_lanes
+from sebody.contract.counts import MEMBERS
+from sebody.explore.ensembles import ensemble
+from sebody.fem import rectangle
 from sebody.scenes import chain, four_bar, heavy_top, squeezer
 
 TOLERANCE = 1e-11       # of increments above 0.04: above rounding of positions
@@ -65,6 +71,52 @@ def test_large_systems():
     assert result.numbering.free > DENSE_LIMIT
     assert result["constraints.velocity"].max() < 1e-7 * np.abs(result.recorded("v")).max()
     assert result["constraints.position"].max() < 1e-9
+
+
+def arms(explicit):
+    """Two hanging beams on hinges that are not parallel; the first turns by 110 degrees."""
+    turn = Rotation.from_rotvec((0.4, -1.1, 0.7)).as_matrix()
+    points = (0, 0, 0), (0.7, 0.1, 0), (0.7, 0.1, 0), (1.2, 0.3, 0.2)
+    model = Model()
+    a, b, c, d = (model.node(name, turn @ x) for name, x in zip("abcd", points, strict=True))
+    section = rectangle(0.03, 0.05, youngs_modulus=2e9, poisson_ratio=0.3, density=4e3)
+    for name, ends in (("upper", (a, b)), ("lower", (c, d))):
+        model.beam(name, ends, section, elements=4, bodies=1, modes=4)
+    model.revolute(a, axis=turn @ (0.1, 0.2, 1.0), explicit=explicit)
+    model.revolute(b, axis=turn @ (-0.2, 0.1, 1.0), to=c, explicit=explicit)
+    model.gravity(turn @ (1.0, -9.0, 3.0))
+    return model
+
+
+@pytest.mark.parametrize("how", [{"scheme": generalized_alpha(tolerance=1e-10, index=2)},
+                                 {"tolerance": Tolerance(1e-4)}])
+def test_equations_of_joints_on_bodies_that_turn(how):
+    """Against shared positions, which need no equations, to what Newton's iteration leaves.
+
+    Corrections of positions were solved for in the axes of bodies from residuals in those of space:
+    runs stopped once a body had turned by 60 degrees.
+    """
+    runs = [simulate(arms(explicit), 2e-3, 0.8, **how) for explicit in (True, False)]
+    by_equations, shared = (run["d.position"] for run in runs)
+    assert by_equations[0] @ by_equations[-1] < 0.0
+    assert np.abs(by_equations - shared).max() < 1e-6
+    assert runs[0]["constraints.position"].max() < 1e-8
+
+
+@pytest.mark.skipif(bool(why_no_lanes()), reason=why_no_lanes())
+def test_equations_of_joints_of_members(monkeypatch):
+    """The same in ensembles, against single runs."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    factors, scheme = np.linspace(0.9, 1.1, MEMBERS), generalized_alpha(index=2)
+    many = Ensemble(arms(True), 2e-3, scheme)
+    field = many.model.gravity_field
+    found = many.run({"gravity": np.multiply.outer(factors, field)}, 0.8,
+                     {"end": final("d.position")})
+    assert found.in_lanes == MEMBERS
+    alone = arms(True)
+    alone.gravity(factors[0] * field)
+    end = simulate(alone, 2e-3, 0.8, scheme)["d.position"][-1]
+    assert np.abs(found["end"][0] - end).max() < 1e-10
 
 
 def test_wrong_index():

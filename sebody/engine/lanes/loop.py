@@ -118,6 +118,7 @@ def _iterate(system, state, scratch, alone, together, scheme, active, dense):
                                          wanted, evaluated)
         if scheme.stabilized:
             take_rates(system, state)
+            to_body_axes(system, state.frames, state.constraint_residuals, False)
         to_body_axes(system, state.frames, state.residual, False)
         _solve(system, state, active, scheme.stabilized, dense)
         active = correct(system, state, scheme, active, iteration, mixed)
