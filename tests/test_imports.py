@@ -1,4 +1,4 @@
-"""The folders and their order: what every file may import, and that no modules import in a circle."""
+"""Folders and their order: what every file may import, and that no modules import in a circle."""
 
 import ast
 import re
