@@ -14,9 +14,6 @@ the derivatives by the motion at constant u:
 """
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled, kernel_function
 from sebody.contract.law_row import (
@@ -51,7 +48,7 @@ from sebody.contract.layout import (
     TANGENT,
     Part,
 )
-from sebody.kernels.abi import Arguments, at, call_kernel
+from sebody.kernels.abi import Arguments, at, call_kernel, call_law
 from sebody.kernels.readings import reading, vary
 
 PLANAR = False
@@ -75,16 +72,6 @@ OPERATIONS = {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
 STEP = 6e-6     # of differences, relative to the number and at least absolute
 
 
-@intrinsic
-def _call(typingctx, address, t, y, x, results, parameters):
-    """Call a law, or its derivatives; returns 1 after a fault."""
-    def codegen(context, builder, sig, args):
-        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-        function = ir.FunctionType(ir.IntType(64), kinds)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
-    return types.int64(types.int64, types.float64, y, x, results, parameters), codegen
-
-
 @compiled(fastmath=False)
 def _evaluate(address, t, y, x, copy, states, results, count, parameters):
     """Set the results of a function, NaN after a fault; it may change the copy of x."""
@@ -92,7 +79,7 @@ def _evaluate(address, t, y, x, copy, states, results, count, parameters):
         copy[i] = x[i]
     for i in range(count):
         results[i] = 0.0
-    if _call(address, t, y, copy, results, parameters) != 0:
+    if call_law(address, t, y, copy, results, parameters) != 0:
         for i in range(count):
             results[i] = np.nan
 

@@ -1,6 +1,6 @@
 """What continuous controllers read in an iterate, and its derivatives by all unknowns.
 
-Kinds of readings are those of sampled controllers, `sebody.engine.control`.
+Kinds of readings are those of sampled controllers, `sebody.engine.channels`.
 """
 
 import numpy as np
@@ -31,7 +31,8 @@ from sebody.kernels.ways import between, carried, turned, turning, way, way_rate
 
 
 @compiled
-def _dot(x, first, c, place):
+def dot(x, first, c, place):
+    """Product of three numbers and a vector, without what is multiplied by zero."""
     total = 0.0
     for i in range(3):
         if c[place + i] != 0.0:
@@ -60,7 +61,7 @@ def reading(row, c, q, R, v, frames, last):
     if kind == HELD:
         return frames[one]
     if kind == DOT:             # c0 + e . x + f . y
-        return c[0] + _dot(x, one, c, 1) + _dot(x, two, c, 4)
+        return c[0] + dot(x, one, c, 1) + dot(x, two, c, 4)
     if kind == TURNED:          # e . (R v)
         return sum3(_back(R, one, c, 1, 0)*v[two], _back(R, one, c, 1, 1)*v[two + 1],
                     _back(R, one, c, 1, 2)*v[two + 2])
@@ -77,13 +78,19 @@ def reading(row, c, q, R, v, frames, last):
     if kind == ITS_RATE or kind == FLAT_RATE:
         return way_rate(kind == FLAT_RATE, q if kind == FLAT_RATE else R, one,
                         (c[1], c[2], c[3]), q, two, row[THIRD], v, two, row[THIRD], row[TURN])
-    along = across = 0.0        # ANGLE: of n of a against n and m of b, or the ground
+    return angle(R, one, two, c, last)
+
+
+@compiled
+def angle(R, one, two, c, last):
+    """Angle of n of a body against n and m of another, or the ground; turns since `last` count."""
+    along = across = 0.0
     for i in range(3):
         own = _forth(R, one, c, 1, i)
         along += own*(_forth(R, two, c, 4, i) if two >= 0 else c[4 + i])
         across += own*(_forth(R, two, c, 7, i) if two >= 0 else c[7 + i])
-    angle = np.arctan2(across, along)
-    return angle + 2.0*np.pi*np.floor((last - angle)/(2.0*np.pi) + 0.5)
+    found = np.arctan2(across, along)
+    return found + 2.0*np.pi*np.floor((last - found)/(2.0*np.pi) + 0.5)
 
 
 @compiled
