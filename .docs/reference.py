@@ -11,7 +11,7 @@ TABLE = Path(__file__).with_name("names.md")
 MEMBERS = "\n   :members:\n   :inherited-members: tuple, dict, object, BaseException"
 
 
-def rooms() -> list[ModuleType]:
+def packages() -> list[ModuleType]:
     """Packages that users import names from."""
     names = re.findall(r"^\| `([\w.]+)` \|", TABLE.read_text(), re.MULTILINE)
     return [import_module(name) for name in names]
@@ -22,9 +22,9 @@ def write(pages: Path) -> str:
     folder = pages / "reference"
     folder.mkdir(parents=True)
     shown: dict[int, str] = {}
-    for room in rooms():
-        (folder / f"{room.__name__}.md").write_text(_page(room, shown))
-    listed = "\n".join(room.__name__ for room in rooms())
+    for package in packages():
+        (folder / f"{package.__name__}.md").write_text(_page(package, shown))
+    listed = "\n".join(package.__name__ for package in packages())
     (folder / "index.md").write_text(
         "# API reference\n\nEvery public name, by the package that it is imported from: the "
         "[table of names](../guide/names.md), or the {ref}`index <genindex>`.\n\n"
@@ -32,14 +32,14 @@ def write(pages: Path) -> str:
     return "reference/index"
 
 
-def _page(room: ModuleType, shown: dict[int, str]) -> str:
+def _page(package: ModuleType, shown: dict[int, str]) -> str:
     """The page of a package: what it says of itself, then its names.
 
     What an earlier page shows, by `id`, is named alone.
     """
-    text = f"# {room.__name__}\n\n{inspect.getdoc(room)}\n\n"
-    for name in sorted(room.__all__, key=str.lower):
-        value, full = getattr(room, name), f"{room.__name__}.{name}"
+    text = f"# {package.__name__}\n\n{inspect.getdoc(package)}\n\n"
+    for name in sorted(package.__all__, key=str.lower):
+        value, full = getattr(package, name), f"{package.__name__}.{name}"
         if (first := shown.setdefault(id(value), full)) != full:
             text += f"`{name}` is {{py:obj}}`{first}`.\n\n"
         elif isinstance(value, dict | tuple):

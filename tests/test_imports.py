@@ -1,4 +1,4 @@
-"""The rooms and their order: what every file may import, and that no modules import in a circle."""
+"""Folders and their order: what every file may import, and that no modules import in a circle."""
 
 import ast
 import re
@@ -13,11 +13,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
-# every room, lowest first, and which others its files may import; those in OPEN are open to all
+# every folder, lowest first, and which others its files may import, besides all of OPEN
 OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "collector", "spelling", "tabular",
         "version", "vectors"}
 COMPILED = {"contract", "compiler", "kernels", "generated"}
-ROOMS = {
+MAY_IMPORT = {
     "errors": set(),
     "inputs": set(),
     "memory": set(),
@@ -42,7 +42,7 @@ ROOMS = {
     "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
     "pictures": {"fem", "reduction", "model", "results"},
-    "door of results": {"results", "pictures"},
+    "names of results": {"results", "pictures"},
     "limits": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
     "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "results", "limits"},
     "small_motion": {*COMPILED, "engine", "model", "assembly", "results", "pictures", "limits",
@@ -51,7 +51,7 @@ ROOMS = {
                 "pictures", "limits", "runs", "small_motion"},
     "gradients": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
                   "pictures", "limits", "runs", "small_motion", "explore"},
-    # a door: names of other rooms
+    # names of other folders
     "analysis": {"limits", "runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
     "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures", "control", "analysis"},
@@ -64,8 +64,8 @@ ROOMS = {
             "explore", "analysis", "scenes", "catalogue", "verify", "export"},
     "derive": {"contract", "compiler", "kernels"},
 }
-# packages that offer names of rooms above their own, loaded when they are asked for
-DOORS = {"sebody.results": "door of results"}
+# offers names of a folder above its own, which are loaded when they are asked for
+APART = {"sebody.results": "names of results"}
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
             "vectors": {"numpy"},
@@ -79,7 +79,7 @@ PICTURES = {"plots", "control_figures", "frequency_pictures", "drawing", "film",
             "rendering", "draw", "picture", "paper_figures", "notebook"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
-# modules of extras by room, and what they may import
+# modules of extras by folder, and what they may import
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
           "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"},
           "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
@@ -95,9 +95,9 @@ def module(path: Path) -> str:
     return ".".join([FOLDERS[folder], *parts])
 
 
-def room(name: str) -> str:
-    """The room a module of the package is in; that of sebody/__init__.py is `sebody`."""
-    return DOORS.get(name, (name.split(".") + ["sebody"])[1])
+def folder_of(name: str) -> str:
+    """The folder of the package that a module is in; that of sebody/__init__.py is `sebody`."""
+    return APART.get(name, (name.split(".") + ["sebody"])[1])
 
 
 def imported(source: str) -> set[str]:
@@ -147,27 +147,27 @@ def test_imports_are_found():
     assert imported('"""To import\nis not to have."""\n') == set()
 
 
-def test_every_room_is_above_those_it_imports():
-    order = list(ROOMS)
-    assert not [(high, low) for high, lower in ROOMS.items() for low in lower
+def test_every_folder_is_above_those_it_imports():
+    order = list(MAY_IMPORT)
+    assert not [(high, low) for high, lower in MAY_IMPORT.items() for low in lower
                 if order.index(low) >= order.index(high)]
-    assert {room(name) for name in MODULES} == set(ROOMS)
+    assert {folder_of(name) for name in MODULES} == set(MAY_IMPORT)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_imports_go_one_way(path):
-    own = room(module(path))
-    allowed = ROOMS[own] | OPEN | {own}
+    own = folder_of(module(path))
+    allowed = MAY_IMPORT[own] | OPEN | {own}
     if path == ROOT / "derive/__main__.py":
         allowed = allowed | {"generated"}           # where it writes
     for name in imported_modules(path):
         assert name in MODULES, f"there is no module {name}"
-        assert room(name) in allowed, f"{module(path)} imports {name}"
+        assert folder_of(name) in allowed, f"{module(path)} imports {name}"
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_packages_of_others(path):
-    own = room(module(path))
+    own = folder_of(module(path))
     allowed = PACKAGES.get(own, RUNTIME) | {"sebody"}
     allowed |= {"matplotlib", "mpl_toolkits"} if path.stem in PICTURES else set()
     allowed |= {"exudyn"} if path.stem in EXTRAS else set()

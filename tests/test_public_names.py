@@ -1,4 +1,4 @@
-"""Names a user imports: what every room offers, and where."""
+"""Names a user imports: what every package offers, and where."""
 
 import inspect
 import re
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOMS = {
+PACKAGES = {
     "sebody": {"InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
                "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
                "generalized_alpha", "harmonic", "hht", "piecewise", "plane", "ramp",
@@ -44,31 +44,31 @@ ROOMS = {
 }
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_a_room_offers_its_names(room):
-    module = import_module(room)
-    assert set(getattr(module, "__all__", ())) == ROOMS[room]
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_package_offers_its_names(package):
+    module = import_module(package)
+    assert set(getattr(module, "__all__", ())) == PACKAGES[package]
     assert module.__doc__
-    for name in ROOMS[room]:
-        assert inspect.getdoc(getattr(module, name)), f"{room}.{name} says nothing of itself"
+    for name in PACKAGES[package]:
+        assert inspect.getdoc(getattr(module, name)), f"{package}.{name} says nothing of itself"
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_the_page_lists_the_names(room):
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_page_lists_the_names(package):
     """From it the pages of the API reference are made."""
     text = (Path(__file__).parents[1] / ".docs" / "names.md").read_text()
-    row = re.search(rf"^\| `{room}` \| (.*) \|$", text, re.MULTILINE)
-    assert set(re.findall(r"`(\w+)`", row[1])) == ROOMS[room]
+    row = re.search(rf"^\| `{package}` \| (.*) \|$", text, re.MULTILINE)
+    assert set(re.findall(r"`(\w+)`", row[1])) == PACKAGES[package]
 
 
 def test_every_name_has_one_place():
-    """But for the class of what runs return, which has a room of its own."""
-    names = [name for room in ROOMS.values() for name in room]
+    """But for the class of what runs return, which has a package of its own."""
+    names = [name for package in PACKAGES.values() for name in package]
     assert {name for name in names if names.count(name) > 1} == {"Result"}
 
 
 def test_names_of_submodules_do_not_hide_functions():
     """`from sebody.reduction import craig_bampton` is the function, not the file of that name."""
-    for room, names in ROOMS.items():
+    for package, names in PACKAGES.items():
         for name in names:
-            assert not inspect.ismodule(getattr(import_module(room), name))
+            assert not inspect.ismodule(getattr(import_module(package), name))

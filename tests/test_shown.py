@@ -7,7 +7,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from test_public_names import ROOMS
+from test_public_names import PACKAGES
 
 from sebody import Model, Simulation, generalized_alpha, simulate
 from sebody.analysis import (
@@ -206,11 +206,11 @@ def test_tables_of_text_align_numbers_and_end():
     assert "<details>" in table(("k",), [(k,) for k in range(60)])
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_help_is_readable(room):
+@pytest.mark.parametrize("package", PACKAGES)
+def test_help_is_readable(package):
     """Types have their names in it, not what they are made of."""
-    for name in ROOMS[room]:
-        one = getattr(import_module(room), name)
+    for name in PACKAGES[package]:
+        one = getattr(import_module(package), name)
         if not callable(one):
             continue
         for line in pydoc.plain(pydoc.render_doc(one)).splitlines():

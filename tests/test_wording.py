@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ("sebody", "derive", "generated", "examples")
-# texts of advice are judged with that room's own tests
+# texts of advice are judged with that folder's own tests
 APART = ()
 
 RETIRED = {     # a regular expression: what is written instead

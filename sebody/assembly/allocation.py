@@ -14,12 +14,7 @@ from sebody.engine.newton import SLOWEST
 from sebody.engine.offsets import at_cache_lines
 from sebody.engine.prediction import FIT, ROWS
 from sebody.engine.scalars import record
-from sebody.engine.state import (
-    CLOCK,
-    CONTROL,
-    EVALUATED,
-    State,
-)
+from sebody.engine.state import CLOCK, CONTROL, EVALUATED, State
 from sebody.engine.system import System
 from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism
@@ -42,12 +37,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
     R = _rotations(model, numbering)
     zeros = np.zeros
     acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
-    clock, control = record(CLOCK), record(CONTROL)
-    clock.step = clock.current_step = clock.aux_step = h
-    clock.contraction = SLOWEST
-    control.wanted = EVALUATED
-    coefficients = zeros(COEFFICIENTS.size(counts))
-    coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
+    clock, control = _counters(h)
     state = State.of(
         counts,
         aux=zeros(total), changes=zeros(ROWS * total), fitted=zeros(total), fit=zeros(FIT),
@@ -57,7 +47,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
         acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
         powers_old=zeros(ports),
-        coefficients=coefficients,
+        coefficients=zeros(COEFFICIENTS.size(counts)),
         g=zeros(int(system.at_g[-1])), J=zeros(int(system.at_J[-1])),
         condensed=zeros(int(system.at_J[system.first_joint[0]]) if len(system.internal) else 0),
         rotated_matrix=zeros(int(system.width.max()) ** 2), residual=zeros(total),
@@ -70,18 +60,27 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
         spare=spare(system, n, dense),
         regularization=zeros(total), constraint_columns=zeros(system.constraint_columns.size),
-        projected=zeros(total),
-        pulled=zeros(total),
+        projected=zeros(total), pulled=zeros(total),
         column=zeros(LANES * system.slot_unknowns.size), work=at_cache_lines(work_size(model)),
         energy=zeros(ENERGIES.size(counts)), memory=zeros(int(system.control.memory[0])),
         guard=new_guard(len(model.bodies)),
         clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
+    state.coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
     of_bodies = 9 * len(numbering.modes)
     state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
     begin(model, numbering, system.control, state.memory, state.frames)
     state.frames_old[of_bodies:] = state.frames[of_bodies:]
     return state
+
+
+def _counters(h: float) -> tuple[np.record, np.record]:
+    """Clock and control of a run that has not begun, with this step of the output grid."""
+    clock, control = record(CLOCK), record(CONTROL)
+    clock.step = clock.current_step = clock.aux_step = h
+    clock.contraction = SLOWEST
+    control.wanted = EVALUATED
+    return clock, control
 
 
 def _start(model: Mechanism, numbering: Numbering) -> tuple[NDArray, NDArray]:

@@ -6,55 +6,50 @@ them. `sebody.engine.routines` has the addresses. The loop itself is called so f
 leave their lanes.
 """
 
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
+
+from sebody.kernels.abi import called
 
 
 @intrinsic
 def call_advance(typingctx, address, system, state, record, scheme, last_grid, chunk, dense):
     """Call `sebody.engine.loop.advance` at its address."""
     return types.int64(types.int64, system, state, record, scheme, types.int64, types.int64,
-                       types.boolean), _call
+                       types.boolean), called
 
 
 @intrinsic
 def call_refactorize(typingctx, address, system, state, wanted, dense):
     """Call `sebody.engine.matrix.refactorize` at its address."""
-    return types.boolean(types.int64, system, state, types.int64, types.boolean), _call
+    return types.boolean(types.int64, system, state, types.int64, types.boolean), called
 
 
 @intrinsic
 def call_refactorize_together(typingctx, address, system, state, together):
     """Call `sebody.engine.lanes.together.refactorize` at its address."""
-    return types.int64(types.int64, system, state, together), _call
+    return types.int64(types.int64, system, state, together), called
 
 
 @intrinsic
 def call_restart(typingctx, address, system, state, lead, dense):
     """Call `sebody.engine.restart.restart` at its address."""
-    return types.int64(types.int64, system, state, types.float64, types.boolean), _call
+    return types.int64(types.int64, system, state, types.float64, types.boolean), called
 
 
 @intrinsic
 def call_sample(typingctx, address, system, state):
     """Call `sebody.engine.control.sample` at its address."""
-    return types.int64(types.int64, system, state), _call
+    return types.int64(types.int64, system, state), called
 
 
 @intrinsic
 def call_samples(typingctx, address, system, state, scratch, alone, apart, dense):
     """Call `sebody.engine.lanes.samples.sample` at its address."""
-    return types.int64(types.int64, system, state, scratch, alone, apart, types.boolean), _call
+    return types.int64(types.int64, system, state, scratch, alone, apart, types.boolean), called
 
 
 @intrinsic
 def call_share(typingctx, address, system, state, task, thread):
     """Call `sebody.engine.sharing.share` at its address."""
-    return types.int64(types.int64, system, state, types.int64, types.int64), _call
-
-
-def _call(context, builder, sig, args):
-    kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-    function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)
-    return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+    return types.int64(types.int64, system, state, types.int64, types.int64), called

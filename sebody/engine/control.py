@@ -6,23 +6,10 @@ input changed, see `engine.restart`. No step is repeated across a sample.
 """
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.law_row import (
-    ALONG,
-    ANGLE,
-    DOT,
-    FLAT_ALONG,
-    FLAT_RATE,
-    IN_PLANE,
-    INTO,
-    ITS_RATE,
-    TURNED,
-)
 from sebody.engine.actuator_inputs import FROM, SINCE, VALUE, input_at
+from sebody.engine.channels import read_channel
 from sebody.engine.control_data import (
     APPLY,
     BIAS,
@@ -59,8 +46,7 @@ from sebody.engine.state import (
     SAMPLED,
 )
 from sebody.engine.step_control import NEAR
-from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.ways import way, way_rate
+from sebody.kernels.abi import at, call_law, pointer_to
 
 
 @compiled
@@ -152,67 +138,6 @@ def channel_value(system, state, k):
 
 
 @compiled
-def read_channel(now, row, c, last):
-    """The quantity of a channel in a state; `last` is what it was before, for angles that turn."""
-    if row[0] == DOT:           # c0 + e . x + f . y
-        return c[0] + _dot(now, row[1], c, 1) + _dot(now, row[2], c, 4)
-    if row[0] == TURNED:        # e . (R v)
-        value = 0.0
-        for i in range(3):
-            if c[1 + i] != 0.0:
-                for j in range(3):
-                    value += c[1 + i] * now[row[1] + 3 * i + j] * now[row[2] + j]
-        return value
-    if row[0] == INTO:          # e . (R' v)
-        value = 0.0
-        for i in range(3):
-            for j in range(3):
-                value += c[1 + j] * now[row[1] + 3 * i + j] * now[row[2] + i]
-        return value
-    if row[0] == IN_PLANE:      # the same with an angle
-        cosine, sine, x, y = (np.cos(now[row[1]]), np.sin(now[row[1]]), now[row[2]],
-                              now[row[2] + 1])
-        return c[1] * (cosine * x + sine * y) + c[2] * (cosine * y - sine * x)
-    if row[0] == ALONG or row[0] == FLAT_ALONG:     # c0 + (R e) . (x - y)
-        return c[0] + way(row[0] == FLAT_ALONG, now, row[1], (c[1], c[2], c[3]), now, row[2],
-                          row[3])
-    if row[0] == ITS_RATE or row[0] == FLAT_RATE:
-        return way_rate(row[0] == FLAT_RATE, now, row[1], (c[1], c[2], c[3]), now, row[2], row[3],
-                        now, row[4], row[5], row[6])
-    if row[0] == ANGLE:
-        return _angle(now, row[1], row[2], c, last)
-    return last
-
-
-@compiled
-def _dot(now, place, c, first):
-    total = 0.0
-    for i in range(3):
-        if c[first + i] != 0.0:
-            total += c[first + i] * now[place + i]
-    return total
-
-
-@compiled
-def _angle(now, a, b, c, last):
-    """Angle of body a against b, or the ground: of n of a against n and m of b; turns count."""
-    x = y = 0.0
-    for i in range(3):
-        along = c[1] * now[a + 3 * i] + c[2] * now[a + 3 * i + 1] + c[3] * now[a + 3 * i + 2]
-        x += along * (_of_row(now, b, i, c, 4) if b >= 0 else c[4 + i])
-        y += along * (_of_row(now, b, i, c, 7) if b >= 0 else c[7 + i])
-    angle = np.arctan2(y, x)
-    return angle + 2.0 * np.pi * np.floor((last - angle) / (2.0 * np.pi) + 0.5)
-
-
-@compiled
-def _of_row(now, R, i, c, first):
-    """A row of a rotation matrix times a vector."""
-    return (c[first] * now[R + 3 * i] + c[first + 1] * now[R + 3 * i + 1]
-            + c[first + 2] * now[R + 3 * i + 2])
-
-
-@compiled
 def _control(system, state, k):
     """Call a controller; 1 where an input changed, 0 where none did, -1 after a fault."""
     control, row, memory = system.control, system.control.controllers[k], state.memory
@@ -224,7 +149,7 @@ def _control(system, state, k):
         memory[y + i] = state.frames[place]
     for i in range(row[ENDS]):
         memory[u + i] = _held(system, state, row[FIRST_END] + i)
-    status = _call(row[FUNCTION], state.clock.time, at(pointer_to(memory), y),
+    status = call_law(row[FUNCTION], state.clock.time, at(pointer_to(memory), y),
                    at(pointer_to(state.frames), row[STATES]), at(pointer_to(memory), u),
                    at(pointer_to(control.parameters), row[PARAMETERS]))
     if status != 0:
@@ -304,13 +229,3 @@ def _mixed(z):
     z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return z ^ (z >> np.uint64(31))
-
-
-@intrinsic
-def _call(typingctx, address, t, y, x, u, parameters):
-    """Call a controller at its address."""
-    def codegen(context, builder, sig, args):
-        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-        function = ir.FunctionType(ir.IntType(64), kinds)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
-    return types.int64(types.int64, types.float64, y, x, u, parameters), codegen

@@ -1,6 +1,5 @@
 """Forces and matrices of all elements in a state, for compiled code."""
 
-from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
@@ -9,7 +8,7 @@ from sebody.contract.layout import C_DAMPING, CLOCK, INPUT, OK, RESIDUAL, VELOCI
 from sebody.engine.actuator_inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.load_amplitudes import time_function_at
-from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.kernels.abi import Arguments, at, call_kernel, called, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 
 SHARE = 64              # elements of a batch that are evaluated at a time, eights of equal bodies
@@ -18,10 +17,7 @@ UNMOVED = 0.03          # share of the tolerance that elements may move and keep
 
 @intrinsic
 def _call_function(typingctx, address, t):
-    def codegen(context, builder, sig, args):
-        function = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()])
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), [args[1]])
-    return types.float64(address, t), codegen
+    return types.float64(address, t), called
 
 
 @compiled(forceinline=True)

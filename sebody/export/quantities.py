@@ -14,7 +14,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.law_row import OUTSIDE
 from sebody.contract.layout import ENERGY, OK, RESIDUAL, VELOCITY
 from sebody.engine.arrays import Arrays
-from sebody.engine.control import read_channel
+from sebody.engine.channels import read_channel
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to

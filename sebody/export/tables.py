@@ -13,11 +13,22 @@ from sebody.export.prepared import Prepared
 
 def model_h(model: Prepared) -> str:
     """The header model.h."""
+    facts = repr((model.inputs, model.image.size)).encode()
+    hash_of_all = sha256(model.image.stored + facts).hexdigest()[:16]
+    record = Record.of(model.run.state, 0, 1)
+    return "\n".join([
+        "/* Numbers of a model, made by sebody: see runtime.h. */", "#include <stdint.h>",
+        f"#define MODEL_NAME {quoted(model.name)}", f"#define MODEL_HASH 0x{hash_of_all}ull",
+        f"#define NAMED(function) {model.identifier}_##function",
+        *(f"#define {name} {value}" for name, value in _numbers(model, record).items()),
+        *_arrays(model, record), ""])
+
+
+def _numbers(model: Prepared, record: Record) -> dict[str, int]:
+    """Sizes, and places in the image and in groups of numbers, by their names in C."""
     run, image, outputs = model.run, model.image, model.outputs
-    system, state, own = model.system, run.state, model.system.control
-    record = Record.of(state, 0, 1)
-    hash_of_all = sha256(image.stored + repr((model.inputs, image.size)).encode()).hexdigest()[:16]
-    numbers = {
+    system, state = model.system, run.state
+    return {
         "IMAGE_SIZE": image.size, "IMAGE_STORED": len(image.stored), "IMAGE_MUTABLE": image.mutable,
         "IMAGE_SAVED": image.saved,
         "AT_CONTROL": image.at(state.control), "AT_CLOCK": image.at(state.clock),
@@ -30,7 +41,7 @@ def model_h(model: Prepared) -> str:
         "DERIVATIVES": int(model.differentiable), "RECORD_PARTS": record.at.size,
         "DENSE": int(run.dense), "ASKED": ASKED, "EVALUATED": EVALUATED, "ROOM": sparse_lu.ROOM,
         "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),
-        "CORNERS": system.corners.size - 1, "TASKS": own.periods.size,
+        "CORNERS": system.corners.size - 1, "TASKS": system.control.periods.size,
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
@@ -38,13 +49,18 @@ def model_h(model: Prepared) -> str:
         **{f"CONTROL_{name.upper()}": _number(CONTROL, name) for name in (
             "grid", "recorded", "reason", "restart", "corner", "wanted")},
         **{f"CLOCK_{name.upper()}": _number(CLOCK, name) for name in ("time", "step")}}
+
+
+def _arrays(model: Prepared, record: Record) -> list[str]:
+    """Declarations of the constant arrays."""
+    system, own = model.system, model.system.control
     first = own.periods.size + control_data.COUNTS
-    listed = [
-        *(_words(name, image.words(group)) for name, group in (
-            ("SYSTEM", system), ("STATE", state), ("OUTPUTS", outputs),
+    return [
+        *(_words(name, model.image.words(group)) for name, group in (
+            ("SYSTEM", system), ("STATE", model.run.state), ("OUTPUTS", model.outputs),
             ("EXCHANGES", model.exchanges))),
         _array("int64_t", "RECORD_AT", record.at.tolist()),
-        _array("double", "SCHEME", [float(x).hex() for x in run.scheme]),
+        _array("double", "SCHEME", [_float(x) for x in model.run.scheme]),
         _array("double", "CORNER", [_float(x) for x in system.corners[:-1]]),
         _array("int64_t", "CORNER_JUMPS", system.jumps[:-1].tolist()),
         _array("double", "PERIOD", [_float(x) for x in own.periods]),
@@ -60,11 +76,6 @@ def model_h(model: Prepared) -> str:
         _array("double", "INPUT_FACTOR", [_float(one.factor) for one in model.inputs]),
         _array("char *const", "REASON", [quoted(REASONS.get(k, "a step failed"))
                                          for k in range(max(REASONS) + 1)])]
-    return "\n".join([
-        "/* Numbers of a model, made by sebody: see runtime.h. */", "#include <stdint.h>",
-        f"#define MODEL_NAME {quoted(model.name)}", f"#define MODEL_HASH 0x{hash_of_all}ull",
-        f"#define NAMED(function) {model.identifier}_##function",
-        *(f"#define {name} {value}" for name, value in numbers.items()), *listed, ""])
 
 
 def quoted(text: str) -> str:

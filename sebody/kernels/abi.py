@@ -61,6 +61,19 @@ def pointer_to(typingctx, array):
     return types.CPointer(array.dtype)(array), codegen
 
 
+def called(context, builder, sig, args):
+    """Code that calls the function at an address, the first argument, with the other arguments."""
+    kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
+    function = ir.FunctionType(context.get_value_type(sig.return_type), kinds)
+    return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
+
+
+@intrinsic
+def call_law(typingctx, address, t, y, x, results, parameters):
+    """Call a function of a controller at its address; it returns 0, or 1 after a fault."""
+    return types.int64(types.int64, types.float64, y, x, results, parameters), called
+
+
 # arguments of a kernel after its task and sizes, by name: arrays or pointers
 Arguments = namedtuple("Arguments", [name for name, _, _ in ARGUMENTS])
 

@@ -14,9 +14,6 @@ the derivatives by the motion at constant u:
 """
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled, kernel_function
 from sebody.contract.law_row import (
@@ -51,7 +48,7 @@ from sebody.contract.layout import (
     TANGENT,
     Part,
 )
-from sebody.kernels.abi import Arguments, at, call_kernel
+from sebody.kernels.abi import Arguments, at, call_kernel, call_law
 from sebody.kernels.readings import reading, vary
 
 PLANAR = False
@@ -75,16 +72,6 @@ OPERATIONS = {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
 STEP = 6e-6     # of differences, relative to the number and at least absolute
 
 
-@intrinsic
-def _call(typingctx, address, t, y, x, results, parameters):
-    """Call a law, or its derivatives; returns 1 after a fault."""
-    def codegen(context, builder, sig, args):
-        kinds = [context.get_value_type(kind) for kind in sig.args[1:]]
-        function = ir.FunctionType(ir.IntType(64), kinds)
-        return builder.call(builder.inttoptr(args[0], function.as_pointer()), args[1:])
-    return types.int64(types.int64, types.float64, y, x, results, parameters), codegen
-
-
 @compiled(fastmath=False)
 def _evaluate(address, t, y, x, copy, states, results, count, parameters):
     """Set the results of a function, NaN after a fault; it may change the copy of x."""
@@ -92,7 +79,7 @@ def _evaluate(address, t, y, x, copy, states, results, count, parameters):
         copy[i] = x[i]
     for i in range(count):
         results[i] = 0.0
-    if _call(address, t, y, copy, results, parameters) != 0:
+    if call_law(address, t, y, copy, results, parameters) != 0:
         for i in range(count):
             results[i] = np.nan
 
@@ -114,6 +101,56 @@ def _differences(address, t, y, x, copy, inputs, states, results, other, count, 
             D[i*columns + column] = (results[i] - other[i])/(2.0*h)
 
 
+@compiled(forceinline=True)
+def _measure(law, numbers, kept, q, R, v, references, frames, y):
+    """Read the inputs in the iterate, and keep them, as angles count their turns."""
+    readings = at(law, LAW_HEADER)
+    for k in range(law[INPUTS]):
+        own = at(numbers, READING_NUMBERS*k)
+        bias = own[READING_NUMBERS - 1]
+        y[k] = bias + reading(at(readings, READING_PLACES*k), own, q, R, v, frames,
+                               references[kept + k] - bias)
+        frames[kept + k] = y[k]
+
+
+@compiled(forceinline=True)
+def _set_outputs(outputs, ends, limits, values, frames, loads):
+    """Set signals, and amplitudes of actuators within their limits."""
+    for k in range(outputs):
+        end, value = at(ends, OUTPUT_PLACES*k), values[k]
+        frames[end[PLACE]] = value
+        if end[PORT] >= 0:
+            if limits[2*k] <= limits[2*k + 1] and not np.isnan(value):
+                value = min(max(value, limits[2*k]), limits[2*k + 1])
+            frames[end[PLACE]], frames[end[PLACE] + 2] = value, value   # set, and reached
+            loads[3*end[PORT]] = value
+
+
+@compiled(forceinline=True)
+def _mark_varying(outputs, limits, values, varies):
+    """1 for each output that varies, 0 for those that are cut off at a limit."""
+    for k in range(outputs):
+        at_limit = (limits[2*k] <= limits[2*k + 1]
+                    and not limits[2*k] <= values[k] <= limits[2*k + 1])
+        varies[k] = 0.0 if at_limit else 1.0
+
+
+@compiled(forceinline=True)
+def _vary_results(law, n, D, Y, c_v, varies, G):
+    """Derivatives of rates of states and of outputs by all unknowns, (results, n), by the chain."""
+    inputs, states, outputs, first = law[INPUTS], law[STATES], law[OUTPUTS], law[FIRST_STATE]
+    columns = inputs + states
+    for i in range(states + outputs):
+        factor = 1.0 if i < states else varies[i - states]
+        for column in range(n):
+            change = 0.0
+            for k in range(inputs):
+                change += D[i*columns + k]*Y[k*n + column]
+            G[i*n + column] = factor*change
+        for j in range(states):
+            G[i*n + first + j] += factor*c_v*D[i*columns + inputs + j]
+
+
 @kernel_function
 def kernel(task, count, stride, width, index, constants, q, R, v, a, references, frames, T, loads,
            coefficients, forces, matrices, work, energies):
@@ -121,7 +158,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     for element in range(count):
         row = at(index, element*stride)
         unknowns = at(at(row, HEADER), row[AT_ROTATIONS])
-        law, c, kept = at(unknowns, n), at(constants, row[AT_CONSTANTS]), row[AT_FRAME]
+        law, c = at(unknowns, n), at(constants, row[AT_CONSTANTS])
         inputs, states, outputs, first = (law[INPUTS], law[STATES], law[OUTPUTS],
                                           law[FIRST_STATE])
         total, columns, t = states + outputs, inputs + states, loads[3*row[AT_PORT]]
@@ -133,12 +170,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         y, x = work, at(work, inputs)
         copy = at(x, states)
         results = at(copy, states)
-        for k in range(inputs):
-            own = at(numbers, READING_NUMBERS*k)
-            bias = own[READING_NUMBERS - 1]
-            y[k] = bias + reading(at(readings, READING_PLACES*k), own, q, R, v, frames,
-                                   references[kept + k] - bias)
-            frames[kept + k] = y[k]
+        _measure(law, numbers, row[AT_FRAME], q, R, v, references, frames, y)
         for i in range(states):
             x[i] = v[unknowns[first + i]]
         _evaluate(law[LAW_FUNCTION], t, y, x, copy, states, results, total, parameters)
@@ -148,14 +180,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         if task != ENERGY:
             for i in range(states):
                 g[first + i] = mass*(a[unknowns[first + i]] - results[i])
-        for k in range(outputs):
-            end, value = at(ends, OUTPUT_PLACES*k), results[states + k]
-            frames[end[PLACE]] = value
-            if end[PORT] >= 0:
-                if limits[2*k] <= limits[2*k + 1] and not np.isnan(value):
-                    value = min(max(value, limits[2*k]), limits[2*k + 1])
-                frames[end[PLACE]], frames[end[PLACE] + 2] = value, value   # set, and reached
-                loads[3*end[PORT]] = value
+        _set_outputs(outputs, ends, limits, at(results, states), frames, loads)
         if task != TANGENT:
             continue
         other = at(results, total)
@@ -175,26 +200,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             Y[i] = 0.0
         for k in range(inputs):
             vary(at(readings, READING_PLACES*k), at(numbers, READING_NUMBERS*k), q, R, v, T, c_q,
-                  c_v, at(Y, k*n))
-        for k in range(outputs):        # what is cut off does not vary; before results are lost
-            value = results[states + k]
-            at_limit = (limits[2*k] <= limits[2*k + 1]
-                        and not limits[2*k] <= value <= limits[2*k + 1])
-            unit[k] = 0.0 if at_limit else 1.0
+                 c_v, at(Y, k*n))
+        _mark_varying(outputs, limits, at(results, states), unit)      # before results are lost
         if law[DERIVATIVES] != 0:
             _evaluate(law[DERIVATIVES], t, y, x, copy, states, D, total*columns, parameters)
         else:
             _differences(law[LAW_FUNCTION], t, y, x, copy, inputs, states, results, other, total,
                          parameters, D)
-        for i in range(total):
-            varies = 1.0 if i < states else unit[i - states]
-            for column in range(n):
-                change = 0.0
-                for k in range(inputs):
-                    change += D[i*columns + k]*Y[k*n + column]
-                G[i*n + column] = varies*change
-            for j in range(states):
-                G[i*n + first + j] += varies*c_v*D[i*columns + inputs + j]
+        _vary_results(law, n, D, Y, c_v, unit, G)
         for i in range(states):
             for column in range(n):
                 J[(first + i)*n + column] -= mass*G[i*n + column]

@@ -113,24 +113,28 @@ class Simulation:
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
         user_faults.forget(model)
-        self.begun = start
-        if start is not None:
-            take(model, self.numbering, self.state, start)
-        self.start: Start = begin(model, self.system, self.numbering, self.state)
-        refuse_contradicted(model, self.numbering, self.state)
-        if start is None:
-            for key, message in start_remarks(model, self.numbering, self.state).items():
+        self.begun, self.tolerance = start, tolerance
+        self._begin()
+        self.rows.begin()
+
+    def _begin(self) -> None:
+        """Find the initial state: velocities, accelerations, what sticks, the first step."""
+        model, numbering, state = self.model, self.numbering, self.state
+        if self.begun is not None:
+            take(model, numbering, state, self.begun)
+        self.start: Start = begin(model, self.system, numbering, state)
+        refuse_contradicted(model, numbering, state)
+        if self.begun is None:
+            for key, message in start_remarks(model, numbering, state).items():
                 self.watch.say(key, message)
-        self.tolerance = tolerance
         self._accelerate()
-        self.held = hold(model, self.system, self.numbering, self.state, self._accelerate_again)
-        if tolerance is not None and not begin_steps(
-                model, self.system, self.numbering, self.state, self.h, tolerance):
+        self.held = hold(model, self.system, numbering, state, self._accelerate_again)
+        if self.tolerance is not None and not begin_steps(
+                model, self.system, numbering, state, self.h, self.tolerance):
             self.watch.say("unsized", UNSIZED)
-        self.sampling.check(self.h, tolerance is None)
+        self.sampling.check(self.h, self.tolerance is None)
         if self.sampling.begin():
             self._accelerate()
-        self.rows.begin()
 
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "

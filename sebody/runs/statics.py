@@ -59,17 +59,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
     _refuse_states(model)
-    sticking = any(load.tuned for load in model.loads)
-    run = Simulation(model, STICKING if sticking else 1.0)
-    unbend(model, run.numbering, run.state)
-    memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
-                 "give fewer")
+    run = _at_rest(model, t)
     state, field = run.state, run.state.coefficients[FIELD:].copy()
+    memory.check(8.0 * steps * state.now.size, f"steps is {steps}: the record of all",
+                 "give fewer")
     steady = Spin.of(run, spin)
-    state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
-    if not sticking:        # what nothing presses does not stick
-        state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
-    set_loads(run.system, state.frames, state.loads, t)
     loads = state.loads.copy()
     run.rows.stretches = [state.now[None].copy()]
     tensions = Tensions.of(run)
@@ -103,6 +97,19 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
             raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
                                   f"{reason}", _result(run, loads, field))
     return _result(run, loads, field)
+
+
+def _at_rest(model: Model, t: float) -> Simulation:
+    """The model as built, with all of the loads of a time and without rates."""
+    sticking = any(load.tuned for load in model.loads)
+    run = Simulation(model, STICKING if sticking else 1.0)
+    unbend(model, run.numbering, run.state)
+    state = run.state
+    state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
+    if not sticking:        # what nothing presses does not stick
+        state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
+    set_loads(run.system, state.frames, state.loads, t)
+    return run
 
 
 def _refuse_states(model: Model) -> None:

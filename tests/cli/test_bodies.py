@@ -5,7 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from malformed.file_cases import calculix, replaced, substructure
+from malformed.fe_files import calculix, substructure
+from malformed.file_cases import replaced
 from scipy.linalg import eigh
 
 from sebody.cli.entry import main

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from malformed import file_cases
+from malformed import fe_files
 from malformed.read_files import SECTION, ball_scene, body, mechanism
 from malformed.run_cases import pendulum
 
@@ -83,7 +83,7 @@ def shafts() -> Model:
 
 def _reduced(**arguments: Any) -> reduction.ReducedBody:
     """A block of bricks with the stress operator."""
-    model = replace(file_cases.BLOCK, stress=(fem.SolidStress(**arguments),))
+    model = replace(fe_files.BLOCK, stress=(fem.SolidStress(**arguments),))
     return reduction.reduce(model, {0: "translation", 3: "translation", 12: "translation"})
 
 
@@ -176,13 +176,13 @@ FEM = {
     "hexahedral_block": Call(fem.hexahedral_block, lambda: {
         "corner": X, "size": (2.0, 1.0, 1.0), "divisions": (2, 1, 1), **MATERIAL}),
     "solid_stress": Call(fem.solid_stress, lambda: {
-        "coordinates": file_cases.BLOCK.coordinates, "cells": file_cases.BLOCK.cells,
+        "coordinates": fe_files.BLOCK.coordinates, "cells": fe_files.BLOCK.cells,
         "youngs_modulus": 1.0, "poisson_ratio": 0.2}),
     "StressModes": Call(fem.StressModes, lambda: {
         "points": np.zeros((2, 3)), "modes": np.zeros((2, 6, 4)), "nodes": [0, 1]}),
     "SolidStress": Call(_reduced, lambda: {
-        "kind": "hexahedron", "nodes": file_cases.BLOCK.cells[0][1],
-        "coordinates": file_cases.BLOCK.coordinates, "elasticity": np.eye(6), "strains": None}),
+        "kind": "hexahedron", "nodes": fe_files.BLOCK.cells[0][1],
+        "coordinates": fe_files.BLOCK.coordinates, "elasticity": np.eye(6), "strains": None}),
     "circle": Call(fem.circle, lambda: {"radius": 0.1, **MATERIAL}),
     "rectangle": Call(fem.rectangle, lambda: {"height": 0.1, "width": 0.2, **MATERIAL}),
     "FEModel": Call(fem.FEModel, lambda: {

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from malformed import file_cases
+from malformed import fe_files, file_cases
 from scipy import sparse
 
 from sebody import Model, Result, Simulation, simulate
@@ -118,11 +118,11 @@ def _scene_file(folder: Path) -> Path:
 
 def generated(folder: Path) -> Path:
     """A block as Abaqus writes its matrices, with labels, beside its deck."""
-    file_cases.calculix(folder)
+    fe_files.calculix(folder)
     (folder / "se.inp").rename(folder / "job.inp")
-    for name, matrix in (("STIF1", file_cases.BLOCK.stiffness), ("MASS1", file_cases.BLOCK.mass)):
+    for name, matrix in (("STIF1", fe_files.BLOCK.stiffness), ("MASS1", fe_files.BLOCK.mass)):
         entries = sparse.coo_array(sparse.tril(matrix))
-        lines = [f"{file_cases.LABELS[i // 3]},{i % 3 + 1}, {file_cases.LABELS[j // 3]},{j % 3 + 1}"
+        lines = [f"{fe_files.LABELS[i // 3]},{i % 3 + 1}, {fe_files.LABELS[j // 3]},{j % 3 + 1}"
                  f", {value:.15e}" for i, j, value in zip(*entries.coords, entries.data,
                                                          strict=True)]
         (folder / f"job_{name}.mtx").write_text("\n".join(lines) + "\n")
@@ -130,7 +130,7 @@ def generated(folder: Path) -> Path:
 
 
 def _sid(folder: Path) -> Path:
-    model = file_cases.BLOCK
+    model = fe_files.BLOCK
     left, right = (np.flatnonzero(np.isclose(model.coordinates[:, 0], x)) for x in (0, 3))
     from sebody.reduction import RigidFace
     faces = [(RigidFace((x, 0.5, 0.5), nodes), "full") for x, nodes in ((0, left), (3, right))]
@@ -192,11 +192,11 @@ KINDS = {
     "sweep table": Kind(_table, _table_of),
     "reference": Kind(_reference, references.kept),
     "scene": Kind(_scene_file, _built, exact=False),
-    "calculix": Kind(file_cases.calculix, partial(_imported, file_cases.FACES, 2), exact=False),
-    "matrix-market": Kind(file_cases.matrix_market, partial(
+    "calculix": Kind(fe_files.calculix, partial(_imported, file_cases.FACES, 2), exact=False),
+    "matrix-market": Kind(fe_files.matrix_market, partial(
         _imported, {"a": 10, "b": 40, "c": 160}, 2), exact=False),
-    "substructure": Kind(file_cases.substructure, partial(_imported, {}, 0), exact=False),
+    "substructure": Kind(fe_files.substructure, partial(_imported, {}, 0), exact=False),
     "generated": Kind(generated, partial(_imported, file_cases.FACES, 2), exact=False),
-    "op4": Kind(file_cases.op4, partial(_imported, {}, 0), exact=False, needs="pyyeti"),
+    "op4": Kind(fe_files.op4, partial(_imported, {}, 0), exact=False, needs="pyyeti"),
     "sid": Kind(_sid, partial(_imported, {}, 0), exact=False),
 }

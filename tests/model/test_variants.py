@@ -2,99 +2,16 @@
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
+from hinged_beams import SECTION, TURN, at, linkage, reduced, rigid_beam, slender
 
-from sebody import InputError, Model, harmonic, simulate
-from sebody.fem import Section, planar_beam, straight_beam
+from sebody import Model, harmonic, simulate
+from sebody.fem import planar_beam
 from sebody.model.variants import VARIANTS, copied, divide, keep_modes, rigid, with_options
 from sebody.reduction import craig_bampton
 
 H, STEPS = 0.01, 20
-TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
-START = np.array([3.0, -2.0, 1.0])
-SECTION = Section(area=9.0, inertia_y=6.75, inertia_z=6.75, torsion=11.387, youngs_modulus=2.1e6,
-                  poisson_ratio=0.3, density=7.8e-3)
-LOAD = np.zeros((7, 6))         # on the nodes of a beam
-LOAD[1:, :3] = 200.0 * TURN @ (0.2, 1.0, -0.4)
-LOAD[4, 3:] = 900.0 * TURN @ (0.0, 0.3, 1.0)
 # iterations of Newton's method end at 1e-8 of the loads; motions that differ by rounding stay close
 CLOSE = 1e-7
-
-
-def at(*place: float) -> np.ndarray:
-    """A point of the scene, turned and shifted."""
-    return START + TURN @ place
-
-
-def reduced(first: np.ndarray, last: np.ndarray, modes: int):
-    """A beam with a load inside."""
-    fe_model = straight_beam(first, last, SECTION, 6)
-    wind = np.zeros(fe_model.stiffness.shape[0])
-    wind[fe_model.rows] = LOAD
-    return craig_bampton(fe_model, [(6, "full"), (0, "full")], modes, loads={"wind": wind})
-
-
-def rigid_beam(model: Model, name: str, node, first: np.ndarray, last: np.ndarray) -> None:
-    """A beam as a rigid body, by the closed forms for a rod with rotary inertia."""
-    length = np.linalg.norm(last - first)
-    mass = SECTION.density * SECTION.area * length
-    rotary = SECTION.density * SECTION.inertia_y * length
-    axis = (last - first) / length
-    along, across = 2 * rotary, rotary + mass * length**2 / 12
-    J = across * np.eye(3) + (along - across) * np.outer(axis, axis)
-    model.rigid_body(name, node, mass, J, (first + last) / 2)
-
-
-def wind(t):
-    return 1.0 + 2.0 * t
-
-
-def drag(t, x, v, force):
-    for i in range(3):
-        force[i] = -0.3 * v[i]
-
-
-def linkage(modes: int = 4, options: dict | None = None, rigid: tuple[str, ...] = ()) -> Model:
-    """Two beams that are hinged together, with a rigid link, springs and loads of every kind.
-
-    The second body is built first, and nodes do not follow the order of the chain.
-    """
-    model, a, b, c = Model(), at(0, 0, 0), at(40, 0, 0), at(40, 30, 10)
-    base, anchor = model.node("base", a), model.node("anchor", at(45, 10, -20))
-    if rigid == ("second",):
-        tip = model.node("tip", c)
-        elbow2 = model.attach("elbow2", b, tip)
-        elbow = model.node("elbow", b, at=elbow2)
-    else:
-        elbow = model.attach("elbow", b, base) if rigid else model.node("elbow", b)
-        elbow2 = model.node("elbow2", b, at=elbow)
-        tip = model.attach("tip", c, elbow2) if "second" in rigid else model.node("tip", c)
-    if "second" in rigid:
-        rigid_beam(model, "second", elbow2, b, c)
-    else:
-        model.superelement("second", reduced(b, c, 2), [tip, elbow2])
-    if "first" in rigid:
-        rigid_beam(model, "first", base, a, b)
-    else:
-        model.superelement("first", reduced(a, b, modes), [elbow, base], **(options or {}))
-    hook = model.attach("hook", at(45, 3, 0), elbow)
-    model.fix(anchor)
-    model.revolute(base, TURN @ (0, 0, 1), name="hinge")
-    model.spring(hook, anchor, stiffness=900.0, damping=2.0)
-    model.point_mass("weight", hook, 0.8)
-    model.torsion_spring(tip, stiffness=300.0, axis=TURN @ (1, 0, 0), to=elbow)
-    model.force(tip, TURN @ (30, 80, 10), harmonic(1.0, 12.0))
-    model.force(elbow, TURN @ (0, 60, 20), wind, follower=True)
-    if "first" in rigid:
-        points = np.linspace(a, b, 7)
-        moment = LOAD[:, 3:] + np.cross(points - a, LOAD[:, :3])
-        model.force(base, LOAD[:, :3].sum(axis=0), wind, follower=True)
-        model.torque(base, moment.sum(axis=0), wind, follower=True)
-    else:
-        model.body_load("first", "wind", wind, name="gale")
-    model.user_force("drag", [tip], drag)
-    model.gravity(TURN @ (0.0, -9.0, 3.0))
-    return model
 
 
 def motion(model: Model, names=("base", "elbow", "elbow2", "hook", "tip")) -> dict:
@@ -247,22 +164,6 @@ def test_a_welded_flying_body_is_rigid_and_keeps_its_motion():
     assert_same(motion(found, ("a", "b", "c")), motion(pair(True), ("a", "b", "c")))
 
 
-def slender(bodies: int, elements: int = 8, planar: bool = False) -> Model:
-    """A beam between other bodies' nodes, that spins from the start."""
-    model = Model(planar=planar)
-    d = 2 if planar else 3
-    tip, base = model.node("tip", at(70, 5, 0)[:d]), model.node("base", at(0, 0, 0)[:d])
-    up = {} if planar else {"up": TURN @ (0, 1, 2)}
-    model.beam("rod", (base, tip), SECTION, elements, bodies, modes=2, damping=0.01, **up)
-    other = model.node("other", at(70, 40, 0)[:d])
-    model.beam("arm", (tip, other), SECTION, 4, 2, **up)
-    model.point_mass("weight", other, 0.7)
-    model.rigid_velocity(np.zeros(d), 2.0 if planar else TURN @ (0, 0, 2.0), about=base.point)
-    model.revolute(base, (0, 0, 1) if planar else TURN @ (0, 0, 1))
-    model.gravity((TURN @ (0.0, -9.0, 3.0))[:d])
-    return model
-
-
 @pytest.mark.parametrize(("before", "after", "planar"), [(1, 4, False), (4, 2, False),
                                                          (2, 1, False), (2, 4, True)])
 def test_a_beam_is_divided(before, after, planar):
@@ -280,77 +181,6 @@ def test_a_beam_is_divided(before, after, planar):
         assert np.array_equal(time_function, first[name])
     back = divide(found, "rod", before, elements=8).model
     assert_same(motion(back, original.nodes), first)
-
-
-def test_what_cannot_be_changed_is_said(original):
-    cases = [
-        (keep_modes, ("third", 1), "superelement 'third' is unknown: the model has second, first"),
-        (keep_modes, ("first", 5), "it has 4: keep 0 to 4"),
-        (with_options, ("first", "mean"), "inertia 'floating_field' needs the exact rates"),
-        (divide, ("first", 2), r"model.beam has built 0 beams 'first'.*\(it has built no beam\)"),
-    ]
-    for change, given, message in cases:
-        with pytest.raises(InputError, match=message):
-            change(original, *given)
-    pushed = copied(original)
-    pushed.mode_force("first", 2, 1.0, name="shaker")
-    with pytest.raises(InputError, match="'shaker' acts on mode 2 .*'first': keep 3 modes or more"):
-        keep_modes(pushed, "first", 2)
-
-
-def test_what_cannot_be_rigid_is_said():
-    held = linkage()
-    held.fix("elbow", "position")
-    with pytest.raises(InputError, match="positions of elbow and base are both fixed"):
-        rigid(held, "first")
-    turned = linkage()
-    turned.fix("base", "rotation")
-    turned.move("elbow", TURN @ (0, 0, 1), harmonic(0.1, 3.0), what="rotation")
-    with pytest.raises(InputError, match="rotations of elbow and base are both fixed"):
-        rigid(turned, "first")
-    thrown = linkage()
-    thrown.initial_velocity("elbow", linear=TURN @ (0, 1.0, 0))
-    with pytest.raises(InputError, match="initial velocity of elbow.position is not that of a "
-                                         "rigid motion with base"):
-        rigid(thrown, "first")
-    parallel = rigid(linkage(), "second").model
-    parallel.superelement("beside", reduced(at(40, 0, 0), at(40, 30, 10), 1), ["tip", "elbow2"])
-
-    with pytest.raises(InputError, match="joined by rigid links already"):
-        rigid(parallel, "beside")
-
-
-def test_a_held_node_without_rotation_cannot_carry_a_rigid_body():
-    model, body = Model(), straight_beam(at(0, 0, 0), at(40, 0, 0), SECTION, 2)
-    model.node("base", at(0, 0, 0))
-    model.node("tip", at(40, 0, 0))
-    model.superelement("beam", craig_bampton(body, [(0, "translation"), (2, "full")], 0),
-                       ["base", "tip"])
-    assert "on node tip, with base on rigid links" in rigid(model, "beam").change
-    model.fix("base", "position")
-    with pytest.raises(InputError, match="'beam' cannot be made rigid: it does not keep both "
-                                         "position and rotation at base, which is held"):
-        rigid(model, "beam")
-
-
-def test_what_a_beam_that_is_divided_must_not_lose_is_said():
-    cases = [
-        (lambda m: m.force("rod 1", TURN @ (0, 1, 0)), "acts on or holds its node 'rod 1'; build"),
-        (lambda m: m.fix("rod 1", "position"), "acts on or holds its node 'rod 1'"),
-        (lambda m: m.attach("on it", at(35, 2.5, 8), "rod 1"), "acts on or holds its node 'rod 1'"),
-        (lambda m: m.mode_force("rod 2", 0, 1.0, name="shaker"),
-         "'shaker' acts on superelement 'rod 2'"),
-    ]
-    for change, message in cases:
-        model = slender(2)
-        change(model)
-        with pytest.raises(InputError, match=f"beam 'rod' cannot be divided anew: .*{message}"):
-            divide(model, "rod", 4)
-    model = rigid(slender(2), "rod 1").model
-    with pytest.raises(InputError, match="superelement 'rod 1' was changed; divide the beam first"):
-        divide(model, "rod", 4)
-    with pytest.raises(InputError, match="8 elements cannot be divided among 3 bodies"):
-        divide(slender(2), "rod", 3)
 
 
 def test_modes_that_stay_keep_their_initial_velocities(original):

@@ -163,7 +163,6 @@ def test_index_2_has_no_such_motion():
     assert np.abs(held(hht(0.0, index=2), 1e-3, 20)[:, 0]).max() < 1e-15
 
 
-
 @pytest.mark.parametrize("scene, steps", [(hinged_beam, 100_000), (planar_hinged_beam, 300_000)])
 def test_the_energy_of_two_bodies_does_not_drift(scene, steps):
     """What Newton's iteration leaves must not have one sign; a million steps may gain 1e-5."""

@@ -155,4 +155,3 @@ def test_flat_bodies_are_warned_of():
     messages = warned(lambda: Simulation(triangle(1e-4), 0.01))
     assert len(messages) == 1
     assert messages[0].startswith("nodes of body 'plate' lie nearly on a line (spread ")
-
