@@ -88,7 +88,7 @@ def exchange(system, state, exchanges):
 
 @compiled
 def _factorize(system, state, exchanges):
-    if state.control.restart != 0 and system.regularized[0] == 0:
+    if state.control.restart != 0 and (system.regularized[0] == 0 or system.massless[0] == 1):
         return _of_masses(system, state, exchanges)
     n = system.diagonal.size
     for i in range(n):

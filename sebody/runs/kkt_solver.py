@@ -205,9 +205,9 @@ class Relaxed:
         scaled = diags(self.scale) @ (self.matrix + diags(self.regularization)) @ diags(self.scale)
         try:
             self.factors = _symmetric(scaled)
-        except RuntimeError:    # a motion without mass, whose pivot rounding leaves elsewhere
+        except RuntimeError:    # a motion without mass; of pivots more is rounding than of entries
             self.factors = _symmetric(scaled + diags(np.where(system.is_multiplier[:n], 0.0,
-                                                              ROUNDING)))
+                                                              ROUNDING / REGULARIZATION)))
 
     @property
     def pivots(self) -> NDArray:

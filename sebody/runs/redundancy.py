@@ -104,6 +104,8 @@ class Solver:
         Joints with constraints that those numbered before them contain.
     shared : tuple of str
         Joints whose multipliers are not unique.
+    massless : bool
+        Whether a motion has stiffness and no mass, as of MacNeal's bodies.
 
     Raises
     ------
@@ -116,17 +118,13 @@ class Solver:
         self.names = numbering.names
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
+        self.massless = not self.system.regular
         self.regularized: Relaxed       # where a pivot is suspicious, and nothing else asks
         if self.system.suspicious:
             system.massless_axes[:matrix.shape[0]] = massless_axes(matrix, system)
             self.regularized = Relaxed(matrix, part_sizes(matrix, system), system)
             self._check_mass(system)
             self._find_redundant(matrix, system)
-
-    @property
-    def massless(self) -> bool:
-        """Whether a motion has stiffness and no mass, as of MacNeal's bodies."""
-        return not self.redundant and not self.system.regular
 
     def check(self, residual: NDArray) -> None:
         """Refuse redundant constraints that demand what no accelerations give.
@@ -151,8 +149,8 @@ class Solver:
     def _find_redundant(self, matrix: csc_matrix, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization.
 
-        Whether constraints contain each other is no matter of masses: where these are missing,
-        pivots are rounding, so all have some more.
+        Whether constraints contain or contradict each other is no matter of masses: where these are
+        missing, pivots are rounding, so all have some more.
         """
         multipliers, sizes = multiplying(system), part_sizes(matrix, system)
         heavier = Relaxed(matrix + diags(np.where(multipliers, 0.0, LIGHT * sizes)), sizes, system)
@@ -160,6 +158,9 @@ class Solver:
         self.redundant = joints(self.names, weak)
         if not self.redundant:
             return
+        self.massless = _lacks_mass(matrix, system)
+        if self.massless:
+            self.regularized = heavier
         part = np.where(multipliers, np.random.default_rng(0).normal(size=weak.size), 0.0)
         for _ in range(SHARPENED):      # one without force has, at random, part of every such one
             part = np.where(multipliers, self.regularized.unmoved(part), 0.0)
@@ -179,6 +180,16 @@ class Solver:
             name = self.names[int(np.argmax(np.abs(probe)))]
             raise InputError(f"the mass matrix is singular: {name} moves no mass; add mass or "
                              "inertia there, fix it, or leave it out")
+
+
+def _lacks_mass(matrix: csc_matrix, system: System) -> bool:
+    """Whether a motion has no mass and no constraint; constraints may be redundant.
+
+    Constraints that give way, by an amount of the order of one, have unique multipliers.
+    """
+    scale = units(matrix, system)
+    giving = diags(np.where(multiplying(system), -1.0 / scale**2, 0.0))
+    return not Scaled(csc_matrix(matrix + giving), scale).regular
 
 
 def contradiction(system: System, state: State, numbering: Numbering) -> str:

@@ -7,11 +7,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from sebody import (
+    InputError,
     Model,
     Simulation,
     SimulationError,
     Tolerance,
     generalized_alpha,
+    harmonic,
     plane,
     ramp,
     simulate,
@@ -122,6 +124,44 @@ def test_no_constraint_is_redundant_for_want_of_mass():
         model.gravity((1.0, -9.0, 0.0))
         start = Simulation(model, STEP).start
         assert start.redundant == ()
+
+
+def door(hinges, explicit):
+    """On hinges about one axis, in whose first the end of the bar lies."""
+    model, first = bar(1.0, 1.0, 1.0, TURN)
+    axis = TURN @ AXIS / np.linalg.norm(AXIS)
+    model.revolute(first, axis, explicit=explicit, name="hinge")
+    for k in range(1, hinges):
+        model.attach(f"hinge {k}", first.point + 0.2 * k * axis, first)
+        model.revolute(f"hinge {k}", axis, explicit=True)
+    model.rigid_velocity(np.zeros(3), 3.0 * axis, about=first.point)
+    return model
+
+
+@pytest.mark.parametrize("explicit", [True, False])
+@pytest.mark.parametrize("hinges, how", [(3, {}), (2, {"scheme": generalized_alpha(index=2)}),
+                                         (2, {"tolerance": Tolerance(1e-4)})])
+def test_redundant_hinges_change_nothing(hinges, how, explicit):
+    """They were refused as contradicting each other, or by a raw RuntimeError of SuperLU.
+
+    One hinge of shared positions is no equation, so fixed steps differ by what Newton's iteration
+    leaves, and chosen steps by their tolerance.
+    """
+    alone, run = (simulate(door(*built), 2e-3, 0.3, **how)
+                  for built in ((1, False), (hinges, explicit)))
+    assert "redundant" in run.summary()
+    apart = np.abs(run["b.position"] - alone["b.position"]).max()
+    assert apart < (1e-3 if "tolerance" in how else 1e-6)
+
+
+def test_hinges_that_contradict_each_other_are_refused():
+    """Also without mass: here by the accelerations that two drives ask for."""
+    model = door(2, True)
+    for amplitude in (0.5, 1.0):        # one rate at the start
+        drive = harmonic(amplitude, 6.0, np.arccos(0.5 / amplitude))
+        model.drive_angle("a", drive, TURN @ AXIS)
+    with pytest.raises(InputError, match="contradict each other at .*drive"):
+        simulate(model, 2e-3, 0.3)
 
 
 def meeting(method="macneal"):
