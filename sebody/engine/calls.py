@@ -20,6 +20,14 @@ def call_advance(typingctx, address, system, state, record, scheme, last_grid, c
 
 
 @intrinsic
+def call_advance_together(typingctx, address, system, state, scratch, alone, together, apart,
+                          record, scheme, last_grid, dense):
+    """Call `sebody.engine.lanes.loop.advance` at its address."""
+    return types.int64(types.int64, system, state, scratch, alone, together, apart, record, scheme,
+                       types.int64, types.boolean), _call
+
+
+@intrinsic
 def call_refactorize(typingctx, address, system, state, wanted, dense):
     """Call `sebody.engine.matrix.refactorize` at its address."""
     return types.boolean(types.int64, system, state, types.int64, types.boolean), called

@@ -9,7 +9,16 @@ from lane_models import linkage, single, turned_beam
 from scipy.integrate import solve_ivp
 
 from sebody import Model, generalized_alpha
-from sebody.analysis import Ensemble, at_time, final, maximum
+from sebody.analysis import (
+    Ensemble,
+    at_time,
+    final,
+    integral,
+    maximum,
+    minimum,
+    rms,
+    soft_maximum,
+)
 from sebody.catalogue import builder
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
@@ -74,6 +83,39 @@ def test_bits_do_not_depend_on_company_order_or_threads(beam, small):
         part = beam.run({name: v[some] for name, v in given.items()}, T_END, OUTPUTS)
         assert part.in_lanes == len(some)
         assert_same(part, whole, some)
+
+
+def test_groups_in_turns_give_what_groups_with_python_between_give(beam, small):
+    """Nothing but numbers made on the way: groups follow each other in one compiled call.
+
+    A run without accelerations, and one that stops in its steps, are among them. All kinds of
+    outputs, against single runs, and with the bits of groups that Python sees for a history.
+    """
+    runs, end = 45, H * 30
+    given = parameters(runs, seed=4)
+    given["gravity"] = np.tile(turned_beam().gravity_field, (runs, 1))
+    given["motor.amplitude"][5], given["gravity"][40] = 3e4, 1e160
+    tip = "tip.velocity"
+    kept = {"most": maximum(tip), "least": minimum(tip), "rms": rms(tip, norm=True),
+            "mean": integral(tip), "end": final("tip.position"), "soft": soft_maximum(tip, 6),
+            "between": at_time(tip, 0.0413), "turned": final("tip.rotation")}
+    found = beam.run(given, end, kept, threads=1)
+    assert found.in_lanes == runs - 2 and sorted(found.failures) == [5, 40]
+    others = np.setdiff1d(np.arange(runs), [5, 40])
+    assert found.reached[others] == pytest.approx(end, rel=1e-12) and found.reached[5] < end
+    assert np.isnan(found.reached[40])
+    assert_same(beam.run(given, end, kept, threads=2), found)
+    watched = beam.run(given, end, kept | {"course": tip}, threads=1)
+    assert watched.failures == found.failures
+    np.testing.assert_array_equal(watched.reached, found.reached)
+    for name, values in found.values.items():
+        np.testing.assert_array_equal(values, watched.values[name])
+    ensemble.WORTH_IT = np.inf      # the fixture puts it back
+    alone = beam.run(given, end, kept)
+    assert alone.failures == found.failures
+    for name, values in found.values.items():
+        size = np.abs(alone[name][others]).max()
+        assert np.abs(values[others] - alone[name][others]).max() < 1e-10 * size
 
 
 def test_bits_of_long_runs_do_not_depend_on_company(beam, small):
@@ -151,7 +193,8 @@ def test_neighbours_are_alike():
     """Groups have every run once, and runs of a group differ less than runs by chance."""
     rng = np.random.default_rng(5)
     changes = rng.uniform(size=(403, 3)) * (1.0, 3.0, 0.1)
-    groups = alike(changes, 8)
+    order = alike(changes, 8)
+    groups = [order[k:k + 8] for k in range(0, 403, 8)]
     assert sorted(run for group in groups for run in group) == list(range(403))
     assert {len(group) for group in groups} == {8, 3}
     within = np.mean([np.ptp(changes[group], axis=0)[:2] / (1.0, 3.0) for group in groups])

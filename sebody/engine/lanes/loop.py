@@ -43,13 +43,13 @@ from sebody.engine.work import add_work
 
 @compiled(nogil=True)
 def advance(system, state, scratch, alone, together, apart, record, scheme, last_grid, dense):
-    """Run until `last_grid`, or until no member is left that has not given up."""
+    """Run until `last_grid`, or until no member is left that has not given up; the step reached."""
     control = state.control
     if control.grid == 0:
         _write(state, apart, record)
     while control.grid < last_grid:
         if every(control.reason == GAVE_UP):
-            return
+            return control.grid
         if system.corners.size > 0 and jump_is_ahead(system, state):
             control.reason = where(control.reason == RUNS, spread(JUMPS), control.reason)
         running = control.reason == RUNS
@@ -66,6 +66,7 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
             run_apart(state, apart, alone.J, scheme, dense)
         if control.grid % record.every[0] == 0:
             _write(state, apart, record)
+    return control.grid
 
 
 @compiled(forceinline=True)

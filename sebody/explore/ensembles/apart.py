@@ -53,8 +53,8 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
         now=np.array([offsets.of(one.now).start]),
         changes=np.array([offsets.of(one.changes).start, offsets.of(one.fit).start]), **scalars,
         **{f"{name}_words": _words(getattr(in_lanes, name)) for name in RECORDS},
-        **{f"{name}_in_lanes": _memory(getattr(in_lanes, name), np.float64) for name in RECORDS},
-        whole_in_lanes=_memory(in_lanes.control, np.int64),
+        **{f"{name}_in_lanes": memory_of(getattr(in_lanes, name), np.float64) for name in RECORDS},
+        whole_in_lanes=memory_of(in_lanes.control, np.int64),
         addresses=np.array([[group._address for group in run] for run in runs]),
         system=runs[0][0], state=runs[0][1], record=unwritten,
         routines=np.array([routine, 0])), runs
@@ -83,7 +83,7 @@ def _words(in_lanes: np.record) -> NDArray:
                      for own, offset in in_lanes.dtype.fields.values()], dtype=np.int64)
 
 
-def _memory(in_lanes: np.record, kind: type) -> NDArray:
+def memory_of(in_lanes: np.record, kind: type) -> NDArray:
     """The memory of a record as numbers of one kind."""
     return in_lanes.base.view(np.ndarray).view(kind)
 

@@ -15,13 +15,17 @@ from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes, number
 from sebody.engine.lanes.matrix import Alone
 from sebody.engine.lanes.together import refactorize
 from sebody.engine.offsets import Offsets
-from sebody.explore.ensembles.apart import new_apart
+from sebody.engine.scalars import numbers_of
+from sebody.explore.ensembles.apart import RECORDS, new_apart
+from sebody.explore.ensembles.beginning import Beginning
+from sebody.explore.ensembles.groups import make, new_groups, run_on
 from sebody.explore.ensembles.matrices import address_together, new_together
+from sebody.explore.ensembles.outputs import folds_of
 from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled, module_in_lanes
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
-LOOP_SECONDS, MATRICES_SECONDS = 7.0, 3.0       # of one processor
+LOOP_SECONDS, GROUPS_SECONDS, MATRICES_SECONDS = 7.0, 3.0, 3.0      # of one processor
 
 _lock = Lock()
 
@@ -41,6 +45,8 @@ def prepare(kernels: Iterable[tuple[str, Own, bool]]) -> None:
                 for (path, *how), name in asked.items() if not is_compiled(path, *how)]
         if not way().is_compiled(loop.advance):
             jobs.append(Job(Task("loop in lanes", f"{__name__}:compile_loop"), LOOP_SECONDS))
+        if not way().is_compiled(make):
+            jobs.append(Job(Task("groups in lanes", f"{__name__}:compile_groups"), GROUPS_SECONDS))
         if any(matrices for *_, matrices in asked) and not way().is_compiled(refactorize):
             jobs.append(Job(Task("matrices in lanes", f"{__name__}:compile_matrices"),
                             MATRICES_SECONDS))
@@ -54,6 +60,27 @@ def compile_kernel(name: str, own: Own, matrices: bool) -> None:
 
 def compile_loop() -> None:
     """The same of the loop, for the types of a small model's arrays: those of every model."""
+    kinds = (*map(typeof, (*_given_to_loop(), generalized_alpha())), types.int64, types.boolean)
+    way().compile_for(loop.advance, kinds)
+
+
+def compile_groups() -> None:
+    """The same of what makes groups from start to end."""
+    given_to_loop, one = _given_to_loop(), smallest()[1]
+    floats, places, pairs = np.zeros(1), np.zeros(1, dtype=np.int64), np.zeros((1, 2), np.int64)
+    scalars = {name: numbers_of(getattr(one, name)) for name in RECORDS} | {"moved": one.moved}
+    given = Beginning(model=floats, floats=floats, copied=pairs, restart=places, slots=places,
+                      ends=places, components=places, slopes=floats, kept=places, **scalars,
+                      **{f"{name}_built": own for name, own in scalars.items()})
+    groups = new_groups(0, given_to_loop, given, places, folds_of((), (), ()))
+    kinds = tuple(map(typeof, (groups, 0, generalized_alpha(), False, 0, 0)))
+    way().compile_for(run_on, kinds)
+    way().compile_for(make, (*map(typeof, (groups, pairs + 0.0, generalized_alpha(), 0.0, False, 0,
+                                           pairs + 0.0, np.zeros(1, dtype=bool))),))
+
+
+def _given_to_loop() -> tuple:
+    """Arguments of the loop in lanes up to `record`, of a small model."""
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
@@ -63,9 +90,7 @@ def compile_loop() -> None:
     columns = Columns(places, empty(1, 1), places)
     members = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)
     apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), members[1], 0)
-    given = (*members, scratch, alone, new_together(members[1], empty(1)), apart, columns,
-             generalized_alpha())
-    way().compile_for(loop.advance, (*map(typeof, given), types.int64, types.boolean))
+    return (*members, scratch, alone, new_together(members[1], empty(1)), apart, columns)
 
 
 def compile_matrices() -> None:

@@ -1,12 +1,44 @@
 """Numbers made of histories on the way, compiled: other threads go on meanwhile."""
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
+from sebody.contract.layout import RECORD_T
+from sebody.engine.arrays import Arrays
 
 MAXIMUM, MINIMUM, RMS, INTEGRAL, FINAL, AT, SOFT_MAXIMUM = range(7)
 SEEN, LAST, LENGTH, FOUND = range(4)    # states so far, time of the last, stretch, whether a value
+FACTS = FOUND + 1
 ROUNDED = 1e-12         # of a time that is asked for
+
+
+@dataclass(frozen=True, eq=False)
+class Folds(Arrays):
+    """All outputs of the members of a group.
+
+    ==================  ============================================================================
+    kinds, numbers,     (n,) of each output, as of `fold`
+    norms
+    ends                (n + 1, 2) where its columns and its values begin
+    columns             of all
+    kept, before,       (values, members) as of `fold`
+    largest
+    facts               (n, 4)
+    ==================  ============================================================================
+    """
+
+    kinds: NDArray
+    numbers: NDArray
+    norms: NDArray
+    ends: NDArray
+    columns: NDArray
+    kept: NDArray
+    before: NDArray
+    largest: NDArray
+    facts: NDArray
 
 
 @compiled(nogil=True)
@@ -84,3 +116,54 @@ def _length(table, k, columns, run):
         value = table[k, columns[c], run]
         total += value * value
     return np.sqrt(total)
+
+
+@compiled(nogil=True)
+def write_values(kind, power, kept, before, largest, facts, run, values):
+    """Write the values of one run, (c,), from what `fold` keeps."""
+    length = facts[LENGTH]
+    for c in range(kept.shape[0]):
+        if kind != RMS and kind != SOFT_MAXIMUM:
+            values[c] = kept[c, run]
+        elif length == 0.0:
+            values[c] = abs(before[c, run])
+        elif kind == RMS:
+            values[c] = np.sqrt(kept[c, run] / length)
+        else:
+            values[c] = largest[c, run] * (kept[c, run] / length) ** (1.0 / power)
+
+
+@compiled
+def forget(folds):
+    """Forget what was taken in."""
+    for c in range(folds.kept.shape[0]):
+        for run in range(folds.kept.shape[1]):
+            folds.kept[c, run] = folds.before[c, run] = folds.largest[c, run] = 0.0
+    for o in range(folds.facts.shape[0]):
+        for k in range(folds.facts.shape[1]):
+            folds.facts[o, k] = 0.0
+
+
+@compiled
+def fold_all(folds, count, table):
+    """Take in the first states of a table, (states, numbers, members)."""
+    t = np.empty(count)
+    for k in range(count):
+        t[k] = table[k, RECORD_T, 0]
+    for o in range(folds.kinds.size):
+        columns = folds.columns[folds.ends[o, 0]:folds.ends[o + 1, 0]]
+        first, end = folds.ends[o, 1], folds.ends[o + 1, 1]
+        fold(folds.kinds[o], folds.numbers[o], folds.norms[o], t, table, columns,
+             folds.kept[first:end], folds.before[first:end], folds.largest[first:end],
+             folds.facts[o])
+
+
+@compiled(nogil=True)
+def write_all(folds, member, values):
+    """Write the values of all outputs of a member, (values,), where there are any."""
+    for o in range(folds.kinds.size):
+        if folds.facts[o, FOUND] != 0.0:
+            first, end = folds.ends[o, 1], folds.ends[o + 1, 1]
+            write_values(folds.kinds[o], folds.numbers[o], folds.kept[first:end],
+                         folds.before[first:end], folds.largest[first:end], folds.facts[o],
+                         member, values[first:end])

@@ -5,17 +5,21 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.counts import MEMBERS, whole_vectors
+from sebody.contract.counts import whole_vectors
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
 from sebody.engine.lanes import loop, samples
-from sebody.engine.lanes.apart import GAVE_UP, RUNS
+from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
+from sebody.engine.loop import lead
 from sebody.engine.system import System
-from sebody.explore.ensembles.apart import address_of_loop, new_apart
+from sebody.explore.ensembles import groups
+from sebody.explore.ensembles.apart import RECORDS, address_of_loop, new_apart
+from sebody.explore.ensembles.folding import Folds, write_all
+from sebody.explore.ensembles.groups import Groups, make, new_groups, run_on
 from sebody.explore.ensembles.matrices import alone, carried, places, together
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
-from sebody.explore.ensembles.outputs import Folds, Output
+from sebody.explore.ensembles.outputs import Output, folds_of
 from sebody.explore.ensembles.shared_constants import (
     kernels_of_batches,
     own_parts,
@@ -49,59 +53,70 @@ class Lanes:
         How each quantity is read.
     last : int
         Last step of the grid.
-
-    Attributes
-    ----------
-    ended : bool
-        Whether these were run to their end; False if they were stopped before.
     """
 
     def __init__(self, copies: Copies, outputs: Mapping[str, Output], forms: Mapping[str, Form],
                  last: int):
-        self.copies = copies
-        image, one = copies.image, copies.image.template
+        self.copies, self._last, self._reached = copies, last, 0
+        image = copies.image
         buffer = empty(image.offsets.size)
         self._numbers = numbers(buffer)
-        self.system = in_lanes(one.system, image.offsets, buffer)
-        self._shared, self._pointed = self._write_constants()
+        self._set_outputs(outputs, forms)
+        self._groups, self._kept_alive = self._new_groups(buffer)
+        self._reason = self._groups.state.control["reason"]     # looked up once: it takes long
+        self._rows = np.empty(self._groups.record.rows.shape)
+        self._has_begun = False         # a member: then its scalars are known
+        self._changes: NDArray          # of the members that have begun
+        self._courses: list[Course] = []
+
+    def _set_outputs(self, outputs: Mapping[str, Output], forms: Mapping[str, Form]) -> None:
+        """Tell outputs that are folds of recorded numbers from all others."""
+        self._columns = _columns(forms, self.copies.image.template.state.now.size)
+        self._forms = {name: form if form.columns is None else form._replace(
+            columns=np.searchsorted(self._columns, form.columns)) for name, form in forms.items()}
+        self._evaluated = not all(form.kinematic for form in forms.values())
+        self._folded = {name: one for name, one in outputs.items()
+                        if one.kind != "history" and forms[one.quantity].columns is not None}
+        self._others = {name: one for name, one in outputs.items() if name not in self._folded}
+
+    def _new_groups(self, buffer: NDArray) -> tuple[Groups, list]:
+        """The arrays of all members, and what else their addresses lead to."""
+        copies, image, one = self.copies, self.copies.image, self.copies.image.template
+        system = in_lanes(one.system, image.offsets, buffer)
+        shared, pointed = self._write_constants()
         table = new_table(buffer, copies.floats, one.state.energy.size)
         rows = with_places(image, table)
-        self.system = _with_kernels(self.system, image, self._shared, rows)
-        self.state = in_lanes(one.state, image.offsets, buffer)
-        self._scratch = Scratch(frames=empty(one.state.frames.size),
-                                T=empty(one.state.T.size), moved=empty(one.state.moved.size),
-                                unmoved=empty(one.state.g.size), table=table, kept=rows.kept)
+        system = _with_kernels(system, image, shared, rows)
+        state = in_lanes(one.state, image.offsets, buffer)
+        scratch = Scratch(frames=empty(one.state.frames.size), T=empty(one.state.T.size),
+                          moved=empty(one.state.moved.size), unmoved=empty(one.state.g.size),
+                          table=table, kept=rows.kept)
         own = np.concatenate([image.lines.slots.astype(np.int64), carried(image)])
-        self._apart, self._runs_apart = new_apart(
-            (one.system, one.state), image.offsets, own, self._numbers, self.state,
+        apart, runs_apart = new_apart(
+            (one.system, one.state), image.offsets, own, self._numbers, state,
             address_of_loop(one.system, one.state, copies.scheme))
-        self._alone = alone(copies, self._numbers)
-        self._together = together(image, self.system, self.state, self._scratch.frames)
+        record = self._new_record()
+        made_alone = alone(copies, self._numbers)
         if copies.sampling.samples:
-            self._apart.routines[1] = samples.address((self.system, self.state, self._scratch,
-                                                       self._alone, self._apart))
-        self._places = self._own_places()
-        columns = _columns(forms, one.state.now.size)
-        self._forms = {name: form if form.columns is None else form._replace(
-            columns=np.searchsorted(columns, form.columns)) for name, form in forms.items()}
-        self._stretch = max(1, min(last // one.every, MOST_NUMBERS // len(columns)))
-        rows = (self._stretch + 1, len(columns))
-        self._record = Columns(places=columns, rows=empty(*rows), every=np.array([one.every]))
-        self._table, self._rows = numbers(self._record.rows), np.empty(rows)
-        self._last, self._every, self._begun = last, one.every, {}
-        # scalars by name: looked up once, since a look-up out of a cold cache takes microseconds
-        self._reason = self.state.control["reason"]
-        self._recorded = _scalar(self.state.control, "recorded")
-        self._time = _scalar(self.state.clock, "time")
-        self._changes: NDArray          # of the members that have begun
-        self._evaluated = not all(form.kinematic for form in forms.values())
-        self._folds = {name: Folds(one, forms[one.quantity].shape,
-                                   self._forms[one.quantity].columns, MEMBERS)
-                       for name, one in outputs.items()
-                       if one.kind != "history" and forms[one.quantity].columns is not None}
-        self._others = {name: one for name, one in outputs.items() if name not in self._folds}
-        self._courses: list[Course] = []
-        self.ended = False
+            apart.routines[1] = samples.address((system, state, scratch, made_alone, apart))
+        given_to_loop = (system, state, scratch, made_alone,
+                         together(image, system, state, scratch.frames), apart, record)
+        found = new_groups(groups.address_of_loop(given_to_loop, copies.scheme), given_to_loop,
+                           copies.given, self._own_places(), self._new_folds())
+        return found, [shared, pointed, runs_apart]
+
+    def _new_record(self) -> Columns:
+        """Room for recorded states."""
+        every = self.copies.image.template.every
+        stretch = max(1, min(self._last // every, MOST_NUMBERS // len(self._columns)))
+        return Columns(places=self._columns, rows=empty(stretch + 1, len(self._columns)),
+                       every=np.array([every]))
+
+    def _new_folds(self) -> Folds:
+        """Room for what outputs are made of."""
+        read = [self._forms[one.quantity] for one in self._folded.values()]
+        return folds_of(list(self._folded.values()), [form.shape for form in read],
+                        [form.columns for form in read])
 
     def _write_constants(self) -> tuple[NDArray, list]:
         """Write straight code of all bodies.
@@ -143,6 +158,28 @@ class Lanes:
                        state.coefficients, state.frames_old, state.q_old, state.aux_old,
                        state.last_correction, state.last_change, state.spare, state.memory)
 
+    @property
+    def at_once(self) -> int:
+        """How many groups `make` can make in one call; 1 if they are made by `begin` and `run`."""
+        waits = (self._others or self.copies.starts_in_python or not self._has_begun)
+        return 1 if waits else max(1, MOST_STEPS // self._last)
+
+    def make(self, changes: NDArray, runs: NDArray, values: Mapping[str, NDArray]) -> NDArray:
+        """Make runs in groups of eight, one group after the other, and write their outputs.
+
+        Returns
+        -------
+        (runs,) bools
+            Which are made. The others are to be run alone.
+        """
+        copies, made = self.copies, np.zeros(len(runs), dtype=bool)
+        found = self._no_values(len(runs))
+        make(self._groups, changes, copies.scheme, lead(copies.scheme), copies.dense, self._last,
+             found, made)
+        self._write_folded(found[made], runs[made], values)
+        self._reached = self._last
+        return made
+
     def begin(self, changes: NDArray) -> NDArray:
         """Begin some runs, one in a lane; returns which have begun. The others are to be run alone.
 
@@ -151,9 +188,9 @@ class Lanes:
         changes : (runs, components)
             As of `Copies.begin`, at most as many as there are lanes.
         """
-        begun = self.copies.begin_together(changes, self._places, self._numbers)
+        begun = self.copies.begin_together(changes, self._groups.places, self._numbers)
         self._changes = changes[begun]
-        if not self._begun and begun.any():
+        if not self._has_begun and begun.any():
             self._keep_begun()
         return begun
 
@@ -165,87 +202,78 @@ class Lanes:
         ndarray
             Which of them gave up, (members,): they are to be run alone.
         """
-        state, count = self.state, len(self._changes)
-        self._begin_records()
-        for folds in self._folds.values():
-            folds.begin()
-        self._courses = [Course(self.copies, self._every, self._others, self._forms)
+        copies, count = self.copies, len(self._changes)
+        self._courses = [Course(copies, copies.image.template.every, self._others, self._forms)
                          for _ in range(count if self._others else 0)]
-        if count < MEMBERS:         # lanes without a member: another one's numbers
-            self._numbers[self._places, count:] = self._numbers[self._places, :1]
         self._begin_samples()
-        self._reason[:count], self._reason[count:] = RUNS, GAVE_UP
-        every, reached = self._every, 0
+        reached = 0
         while reached < self._last:
-            reached = min(self._last, (reached // every + self._stretch) * every,
-                          reached + MOST_STEPS)
-            self._recorded[0] = 0
-            loop.advance(self.system, state, self._scratch, self._alone, self._together,
-                         self._apart, self._record, self.copies.scheme, reached, self.copies.dense)
+            reached = run_on(self._groups, count, copies.scheme, copies.dense, reached,
+                             min(self._last, reached + MOST_STEPS))
             gave_up = self._reason[:count] == GAVE_UP
-            self._take_outputs((~gave_up).nonzero()[0])
+            if self._others:
+                self._take_others((~gave_up).nonzero()[0])
             if reached < self._last and stop():
                 break
-        self.ended = reached == self._last
+        self._reached = reached
         return gave_up
 
-    def _take_outputs(self, members: NDArray) -> None:
-        """Take in recorded states: folds of all members together, all else of some members each.
-
-        What folds take in of members that have given up is not asked for.
-        """
-        table, rows = self._table, self._rows[:self._recorded[0]]
-        t = table[:len(rows), 0, 0].copy()
-        for folds in self._folds.values():
-            folds.add(t, table)
-        if self._others:
-            for member in members:
-                if self._evaluated:         # quantities of elements: with the member's constants
-                    self.copies.begin(self._changes[member])
-                loop.rows_of(table, member, rows)
-                self._courses[member].take(rows)
+    def _take_others(self, members: NDArray) -> None:
+        """Take in recorded states of some members, for outputs that are no folds of them."""
+        rows = self._rows[:self._groups.state.control.recorded]
+        for member in members:
+            if self._evaluated:         # quantities of elements: with the member's constants
+                self.copies.begin(self._changes[member])
+            loop.rows_of(self._groups.table, member, rows)
+            self._courses[member].take(rows)
 
     def write(self, members: NDArray, runs: NDArray, values: Mapping[str, NDArray]) -> None:
         """Write the outputs of some members that were run last to those of all runs."""
-        for name, folds in self._folds.items():
-            folds.write(members, runs, values[name])
+        found = self._no_values(len(members))
+        for member, own in zip(members, found, strict=True):
+            write_all(self._groups.folds, member, own)
+        self._write_folded(found, runs, values)
         if self._others:
             for member, run in zip(members, runs, strict=True):
                 self._courses[member].write(run, values)
 
+    def _no_values(self, runs: int) -> NDArray:
+        """Outputs that are folds, of runs that have none yet."""
+        return np.full((runs, len(self._groups.folds.kept)), np.nan)
+
+    def _write_folded(self, found: NDArray, runs: NDArray, values: Mapping[str, NDArray]) -> None:
+        """Write outputs that are folds, (runs, values), to those of all runs."""
+        ends = self._groups.folds.ends[:, 1]
+        for name, first, end in zip(self._folded, ends, ends[1:], strict=False):
+            values[name][runs] = found[:, first:end].reshape(len(runs), *values[name].shape[1:])
+
     def _keep_begun(self) -> None:
         """Keep the scalars and counters of a member that has begun; failed starts have others."""
         self.copies.begin(self._changes[0])
-        for name in ("control", "clock", "guard"):
-            record = getattr(self.state, name)
-            fill(record, getattr(self.copies.state, name))
-            own = record.base.view(np.uint8)        # bytes: names one by one take long
-            self._begun[name] = own, own.copy()
+        for name in RECORDS:
+            fill(getattr(self._groups.state, name), getattr(self.copies.state, name))
+        self._groups.begun[:] = np.concatenate([getattr(self._groups, name) for name in RECORDS])
+        self._has_begun = True
 
     def _begin_samples(self) -> None:
         """Give members the arrays that samples are made with: counts, queues, parameters."""
         image, memory = self.copies.image, self.copies.image.template.state.memory
-        if self._apart.routines[1]:
+        apart = self._groups.apart
+        if apart.routines[1]:
             own = image.offsets.of(memory)
             taken = np.concatenate([image.lines.slots, np.arange(own.start, own.stop)])
-            self._apart.numbers[:, taken] = self._numbers[taken].T
-            self.state.memory[:] = self._apart.numbers[0, own]
+            apart.numbers[:, taken] = self._numbers[taken].T
+            self._groups.state.memory[:] = apart.numbers[0, own]
 
-    def _begin_records(self) -> None:
-        """Set scalars and counters to those of a member that has begun, the same for all."""
-        for own, begun in self._begun.values():
-            own[...] = begun
+    @property
+    def ended(self) -> bool:
+        """Whether the runs that were made last were made to their end, and not stopped before."""
+        return self._reached == self._last
 
     @property
     def time(self) -> float:
-        """Time reached."""
-        return float(self._time[0])
-
-
-def _scalar(record: np.record, name: str) -> NDArray:
-    """The memory of a scalar that is the same for all members, (1,)."""
-    kind, first = record.dtype.fields[name]
-    return record.base.view(np.uint8)[first:first + kind.itemsize].view(kind)
+        """Time that the runs reached that were made last."""
+        return float(self._reached * self._groups.state.clock.step)
 
 
 def _columns(forms: Mapping[str, Form], count: int) -> NDArray:

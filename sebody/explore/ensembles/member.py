@@ -53,7 +53,7 @@ class Copies:
         self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
-        self._given = self._beginning()
+        self.given = self._beginning()
         self._record: Record | None = None
         self.none = Record.of(self.state, 0)
 
@@ -78,7 +78,7 @@ class Copies:
             The initial state cannot be evaluated.
         """
         system, state, sampled = self.system, self.state, False
-        beginning.begin(system, state, self._given, change)
+        beginning.begin(system, state, self.given, change)
         code = self._advance_start()
         while code in (DONE, READ) and self.sampling.samples:
             if code == DONE and not sampled:
@@ -92,8 +92,13 @@ class Copies:
         if code == FAILED:
             raise InputError("the initial state has no accelerations: "
                              f"{REASONS[int(state.control.reason)]}")
-        beginning.end(state, self._given)
+        beginning.end(state, self.given)
         return code == DONE
+
+    @property
+    def starts_in_python(self) -> bool:
+        """Whether starts have Python between them: for row exchanges, or for samples."""
+        return bool(self.system.massless[0]) or bool(self.sampling.samples)
 
     def _advance_start(self) -> int:
         """Go on with a start; factorizations with row exchanges are made here."""
@@ -115,9 +120,9 @@ class Copies:
         lanes : (size, members)
             Gets it.
         """
-        if self.system.massless[0] or self.sampling.samples:    # row exchanges, or Python samples
+        if self.starts_in_python:
             return self._begin_each(changes, places, lanes)
-        codes = beginning.begin_together(self.system, self.state, self._given, changes,
+        codes = beginning.begin_together(self.system, self.state, self.given, changes,
                                          lead(self.scheme), self.dense, places, lanes)
         return codes == DONE
 

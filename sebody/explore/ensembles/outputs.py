@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import prod
 from typing import NamedTuple
@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.contract.counts import MEMBERS
 from sebody.errors import InputError
-from sebody.explore.ensembles.folding import FOUND, LENGTH, fold
+from sebody.explore.ensembles.folding import FACTS, FOUND, Folds, fold, write_values
 
 # as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
@@ -50,6 +51,10 @@ class Output:
                                  "give one of kind 'at', and of no other")
         if self.time is not None:
             inputs.number(self.time, f"output of {self.quantity}: time", least=0)
+
+    def size(self, shape: tuple[int, ...]) -> int:
+        """How many values there are of a quantity of some shape in a state."""
+        return 1 if self.norm else prod(shape)
 
 
 def maximum(quantity: str, norm: bool = False) -> Output:
@@ -116,7 +121,7 @@ def outputs_of(given: Mapping[str, Output | str], t_end: float) -> dict[str, Out
 
 
 class Room(NamedTuple):
-    """What `fold` keeps of the histories of some runs."""
+    """What `fold` keeps of the history of a run."""
 
     kept: NDArray
     before: NDArray
@@ -124,42 +129,29 @@ class Room(NamedTuple):
     facts: NDArray
 
     @classmethod
-    def of(cls, output: Output, shape: tuple[int, ...], runs: int) -> Room:
+    def of(cls, output: Output, shape: tuple[int, ...]) -> Room:
         """Room for an output of a quantity of some shape."""
-        size = 1 if output.norm else prod(shape)
-        return cls(*np.zeros((3, size, runs)), np.zeros(4))
+        return cls(*np.zeros((3, output.size(shape), 1)), np.zeros(FACTS))
 
 
-class Folds:
-    """The values of an output of the members of a group, taken in together.
+def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
+             columns: Sequence[NDArray]) -> Folds:
+    """Room for outputs of all members of a group.
 
     Parameters
     ----------
-    columns : (c,)
-        Which of the recorded numbers the values are.
-    count : int
-        Number of members.
+    shapes : sequence of tuple
+        Of the quantity of each in a state.
+    columns : sequence of (c,)
+        Which of the recorded numbers its values are.
     """
-
-    def __init__(self, output: Output, shape: tuple[int, ...], columns: NDArray, count: int):
-        self._columns, self._room = columns, Room.of(output, shape, count)
-        self._output, self._asked = output, _asked(output)
-        self._memory = self._room.kept.base, self._room.facts   # of all that is kept
-
-    def begin(self) -> None:
-        """Forget what was taken in."""
-        for own in self._memory:
-            own[...] = 0.0
-
-    def add(self, t: NDArray, table: NDArray) -> None:
-        """Take in the next recorded states of all members; the table is (states, numbers, all)."""
-        fold(*self._asked, t, table, self._columns, *self._room)
-
-    def write(self, members: NDArray, runs: NDArray, values: NDArray) -> None:
-        """Write the values of some members, if there are any, to those of their runs."""
-        if self._room.facts[FOUND]:
-            values[runs] = _value(self._output, self._room).T[members].reshape(
-                len(members), *values.shape[1:])
+    kinds, numbers, norms = zip(*map(_asked, outputs), strict=True) if outputs else ((), (), ())
+    sizes = [(len(own), output.size(shape))
+             for output, shape, own in zip(outputs, shapes, columns, strict=True)]
+    ends = np.cumsum([(0, 0), *sizes], axis=0)
+    return Folds(np.array(kinds, np.int64), np.array(numbers, float), np.array(norms, bool), ends,
+                 np.concatenate([np.zeros(0, np.int64), *columns]),
+                 *np.zeros((3, ends[-1, 1], MEMBERS)), np.zeros((len(outputs), FACTS)))
 
 
 class Fold:
@@ -174,7 +166,7 @@ class Fold:
     def __init__(self, output: Output, shape: tuple[int, ...]):
         self.output, self.shape = output, () if output.norm else shape
         self._all = np.arange(prod(shape))
-        self._room = Room.of(output, shape, 1)
+        self._room = Room.of(output, shape)
 
     def add(self, t: NDArray, values: NDArray) -> None:
         """Take in the next recorded states, (k,) times and (k, ...) values."""
@@ -188,21 +180,12 @@ class Fold:
         """The value; None if there is none, as of a time the run did not reach."""
         if not self._room.facts[FOUND]:
             return None
-        return _value(self.output, self._room).reshape(self.shape)
+        found = np.empty(len(self._room.kept))
+        write_values(*_asked(self.output)[:2], *self._room, 0, found)
+        return found.reshape(self.shape)
 
 
 def _asked(output: Output) -> tuple[int, float, bool]:
     """What `fold` is to make."""
     number = output.power if output.time is None else output.time
     return KINDS.index(output.kind), number, output.norm
-
-
-def _value(output: Output, room: Room) -> NDArray:
-    """The values of histories, (c, runs)."""
-    if output.kind not in ("rms", "soft_maximum"):
-        return room.kept
-    length = room.facts[LENGTH]
-    if length == 0.0:
-        return np.abs(room.before)
-    mean = room.kept / length
-    return np.sqrt(mean) if output.kind == "rms" else room.largest * mean ** (1 / output.power)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from copy import copy
 from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Any
@@ -23,6 +23,7 @@ from sebody.runs.simulation import Simulation
 if TYPE_CHECKING:
     from sebody.explore.ensembles.lanes import Lanes
 
+SHARES = 4      # at least so many are left for each thread when one takes groups
 LOOK = 0.05     # seconds between looks at the threads, for progress and Ctrl-C
 INTERRUPTED = "interrupted before its end"
 
@@ -60,9 +61,8 @@ class Work:
         self._stop, self._lock = Event(), lock
         self._done, self._error = 0, None
         self._changes = self._differences() if self.image.linear else None
-        self._groups = (iter(alike(self._changes, MEMBERS)) if in_lanes else
-                        ([run] for run in range(outcome.runs)))
-        self._in_lanes = in_lanes
+        self._order = (alike(self._changes, MEMBERS) if in_lanes else np.arange(outcome.runs))
+        self._in_lanes, self._taken, self._threads = in_lanes, 0, 1
 
     def go(self, threads: int, progress: Callable[[float], None] | None) -> None:
         """Do all runs; Ctrl-C ends them, and the outcome says so."""
@@ -70,6 +70,7 @@ class Work:
             from sebody.explore.ensembles.compiling import prepare
 
             prepare(kernels_of_batches(self.image))
+        self._threads = threads
         workers = [Thread(target=self._work, daemon=True)
                    for _ in range(threads if self.outcome.runs > 1 else 0)]
         try:
@@ -99,20 +100,26 @@ class Work:
         try:
             copies = Copies(self.image) if self.image.linear else None
             lanes = self._lanes(copies)
-            while group := self._next_group():
+            while len(runs := self._next_runs(lanes)):
                 if self._stop.is_set():
                     return
-                for run in self._run_together(group, lanes) if lanes else group:
+                for run in self._run_in_lanes(runs, lanes) if lanes else runs.tolist():
                     self._run(run, copies)
                     self._done += 1
         except Exception as error:      # of the program: raised by the thread that waits
             self._error = error
             self._stop.set()
 
-    def _next_group(self) -> Sequence[int]:
-        """Runs that no thread has taken yet; none if all are taken."""
+    def _next_runs(self, lanes: Lanes | None) -> NDArray:
+        """Runs that no thread has taken yet; none if all are taken.
+
+        In lanes these are several groups, at the end fewer and fewer: threads end together.
+        """
         with self._lock:
-            return next(self._groups, ())
+            first, size = self._taken, MEMBERS if lanes else 1
+            shares = (len(self._order) - first) // (SHARES * self._threads * size)
+            self._taken += size * max(1, min(shares, lanes.at_once if lanes else 1))
+            return self._order[first:self._taken]
 
     def _lanes(self, copies: Copies | None) -> Lanes | None:
         """The arrays of a thread for runs that are made eight at a time."""
@@ -123,24 +130,28 @@ class Work:
         with self._lock:        # straight code is compiled by one thread
             return Lanes(copies, self.outputs, self.forms, self.last)
 
-    def _run_together(self, group: Sequence[int], lanes: Lanes) -> Sequence[int]:
-        """Make some runs at a time; returns those that are to be made alone."""
-        runs = np.array(group)
-        begun = lanes.begin(self._changes[runs])
-        alone = runs[~begun].tolist()
-        if not begun.any():
-            return alone
-        gave_up = lanes.run(self._stop.is_set)
-        members, runs = (~gave_up).nonzero()[0], runs[begun]
-        done = runs[members]
+    def _run_in_lanes(self, runs: NDArray, lanes: Lanes) -> list[int]:
+        """Make some runs eight at a time; returns those that are to be made alone."""
+        made = (lanes.make(self._changes[runs], runs, self.outcome.values)
+                if lanes.at_once > 1 else self._run_group(runs, lanes))
+        done = runs[made]
         self.outcome.reached[done] = lanes.time
-        lanes.write(members, done, self.outcome.values)
         if not lanes.ended:
             self.outcome.failures |= dict.fromkeys(done.tolist(), INTERRUPTED)
         with self._lock:
-            self.outcome.in_lanes += len(members)
-            self._done += len(members)
-        return alone + runs[gave_up].tolist()
+            self.outcome.in_lanes += len(done)
+            self._done += len(done)
+        return runs[~made].tolist()
+
+    def _run_group(self, runs: NDArray, lanes: Lanes) -> NDArray:
+        """Make a group, with Python where it is needed; returns which runs are made."""
+        made = lanes.begin(self._changes[runs])
+        begun = made.nonzero()[0]
+        if len(begun):
+            gave_up = lanes.run(self._stop.is_set)
+            lanes.write((~gave_up).nonzero()[0], runs[begun[~gave_up]], self.outcome.values)
+            made[begun[gave_up]] = False
+        return made
 
     def _run(self, run: int, copies: Copies | None) -> None:
         try:
@@ -177,8 +188,8 @@ class Work:
                           for name, handle in self.image.handles.items()])
 
 
-def alike(changes: NDArray, count: int) -> list[Sequence[int]]:
-    """Runs in groups of some number whose parameters are close to each other.
+def alike(changes: NDArray, count: int) -> NDArray:
+    """Runs in an order in which groups of some number have parameters close to each other.
 
     Those that are alike need about as many iterations in a step, and matrices at the same times.
     By the two parameters that vary most: stripes of the first are put in order by the second.
@@ -194,8 +205,7 @@ def alike(changes: NDArray, count: int) -> list[Sequence[int]]:
     stripes = max(1, round(np.sqrt(runs / count)))
     ordered = [order[part[np.argsort(changes[order[part], second], kind="stable")]]
                for part in np.array_split(np.arange(runs), stripes)]
-    whole = np.concatenate(ordered).tolist()
-    return [whole[k:k + count] for k in range(0, runs, count)]
+    return np.concatenate(ordered)
 
 
 def processors() -> int:
