@@ -24,7 +24,7 @@ def call_advance_together(typingctx, address, system, state, scratch, alone, tog
                           record, scheme, last_grid, dense):
     """Call `sebody.engine.lanes.loop.advance` at its address."""
     return types.int64(types.int64, system, state, scratch, alone, together, apart, record, scheme,
-                       types.int64, types.boolean), _call
+                       types.int64, types.boolean), called
 
 
 @intrinsic
