@@ -78,11 +78,6 @@ class Layout(NamedTuple):
         return None if self.nodes is None else sum(kind != "translation" for kind in self.nodes)
 
     @property
-    def position_size(self) -> int:
-        """Coordinates of one position."""
-        return 2 if self.planar else 3
-
-    @property
     def rotation_size(self) -> int:
         """Coordinates of one rotation."""
         return 1 if self.planar else 3

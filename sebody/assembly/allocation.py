@@ -8,13 +8,14 @@ from sebody.assembly.control import begin
 from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
+from sebody.engine.clock import CLOCK, CONTROL
 from sebody.engine.growth import new_guard
 from sebody.engine.kept_factors import spare
 from sebody.engine.newton import SLOWEST
 from sebody.engine.offsets import at_cache_lines
 from sebody.engine.prediction import FIT, ROWS
 from sebody.engine.scalars import record
-from sebody.engine.state import CLOCK, CONTROL, EVALUATED, State
+from sebody.engine.state import EVALUATED, State
 from sebody.engine.system import System
 from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism

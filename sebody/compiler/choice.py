@@ -14,7 +14,7 @@ from types import ModuleType
 import numba
 
 from sebody.compiler import store
-from sebody.compiler.sources import COMPILER, room_hash
+from sebody.compiler.sources import COMPILER, folder_hash
 from sebody.errors import InputError
 
 VARIABLE = "SEBODY_PLAIN"
@@ -61,7 +61,7 @@ def _untested_fails() -> str:
     first, end = TESTED
     if first <= tuple(int(part) for part in numba.__version__.split(".")[:2]) < end:
         return ""
-    here, made_from = Path(__file__), f"{room_hash(COMPILER)}, Numba {numba.__version__}"
+    here, made_from = Path(__file__), f"{folder_hash(COMPILER)}, Numba {numba.__version__}"
     name = f"trial.{sys.implementation.cache_tag}.sebody"
     for outcome in store.read(here, name, made_from):
         return "" if outcome == _GOOD else outcome.decode()

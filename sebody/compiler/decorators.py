@@ -8,7 +8,7 @@ from numba import types
 
 from sebody.compiler.choice import way
 from sebody.compiler.code import Code
-from sebody.compiler.sources import KERNELS, function_hash, in_room, kernel_hash
+from sebody.compiler.sources import KERNELS, function_hash, in_folder, kernel_hash
 from sebody.contract.layout import ARGUMENTS
 
 _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(types.float64)}
@@ -32,7 +32,7 @@ def compiled(function: Callable | None = None, **options) -> Callable:
     if function is None:
         return partial(compiled, **options)
     function.apart = options.pop("apart", False)
-    rounding = CONTRACT if in_room(function, KERNELS) else False
+    rounding = CONTRACT if in_folder(function, KERNELS) else False
     options = {"error_model": "numpy", "fastmath": rounding} | options
     return way().function(function, options, function_hash(function))
 

@@ -17,12 +17,12 @@ _DIGITS = 12
 
 
 @cache
-def room_hash(*rooms: str) -> str:
+def folder_hash(*folders: str) -> str:
     """Hash of the syntax of all modules of some folders of the package, constants included.
 
     Parameters
     ----------
-    *rooms : str
+    *folders : str
         Folders below ``sebody/``, such as ``"kernels"``.
 
     Raises
@@ -31,22 +31,22 @@ def room_hash(*rooms: str) -> str:
         A folder without modules: stale compiled code would not be noticed.
     """
     paths = []
-    for room in rooms:
-        files = sorted((PACKAGE / room).rglob("*.py"))
+    for folder in folders:
+        files = sorted((PACKAGE / folder).rglob("*.py"))
         if not files:
-            raise FileNotFoundError(f"{PACKAGE / room} holds no modules: its hash would be empty")
+            raise FileNotFoundError(f"{PACKAGE / folder} holds no modules: its hash would be empty")
         paths += files
-    return _syntax_hash("-".join(rooms), *paths)
+    return _syntax_hash("-".join(folders), *paths)
 
 
-def in_room(function: Callable, room: str) -> bool:
+def in_folder(function: Callable, folder: str) -> bool:
     """Whether a function is written in a folder of the package."""
-    return _is_in_room(function.__code__.co_filename, room)
+    return _is_in_folder(function.__code__.co_filename, folder)
 
 
 @cache      # of the two hundred functions that a run needs many are in one module
-def _is_in_room(path: str, room: str) -> bool:
-    return Path(path).is_relative_to(PACKAGE / room)
+def _is_in_folder(path: str, folder: str) -> bool:
+    return Path(path).is_relative_to(PACKAGE / folder)
 
 
 def function_hash(function: Callable) -> str:
@@ -55,12 +55,12 @@ def function_hash(function: Callable) -> str:
     Functions in ``kernels/`` call each other; all others call ``kernels/``, ``engine/`` and the
     modules of their own folder that have compiled functions.
     """
-    if in_room(function, KERNELS):
-        return room_hash(*KERNEL_CODE)
-    if in_room(function, ENGINE):
-        return room_hash(*CODE)
+    if in_folder(function, KERNELS):
+        return folder_hash(*KERNEL_CODE)
+    if in_folder(function, ENGINE):
+        return folder_hash(*CODE)
     path = Path(function.__code__.co_filename)
-    return f"{room_hash(*CODE)} {_syntax_hash(path.stem, path, *_neighbours(path))}"
+    return f"{folder_hash(*CODE)} {_syntax_hash(path.stem, path, *_neighbours(path))}"
 
 
 @cache
@@ -73,7 +73,7 @@ def _neighbours(path: Path) -> list[Path]:
 def kernel_hash(path: Path) -> str:
     """Hash of all sources that a kernel may depend on: what it calls, and its own file."""
     # byte by byte: nobody edits the comments of generated files, and parsing these takes long
-    return f"{room_hash(*KERNEL_CODE)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
+    return f"{folder_hash(*KERNEL_CODE)} {sha256(path.read_bytes()).hexdigest()[:_DIGITS]}"
 
 
 @cache

@@ -15,10 +15,10 @@ from numba import types
 from numba.extending import NativeValue, models, register_model, unbox
 
 from sebody.compiler.choice import way
-from sebody.compiler.sources import CODE, room_hash
+from sebody.compiler.sources import CODE, folder_hash
 
 # part of every compiled type: what is compiled for other sources is never used
-SOURCES = room_hash(*CODE)
+SOURCES = folder_hash(*CODE)
 _PLACE = c_char * 0     # has the address of an array, even of an empty one
 _WORD = ir.IntType(64)
 

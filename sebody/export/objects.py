@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from sebody.compiler.code import Place
-from sebody.compiler.sources import room_hash
+from sebody.compiler.sources import folder_hash
 from sebody.compiler.workers import Task, call_all
 from sebody.engine import loop
 from sebody.errors import SebodyError
@@ -63,10 +63,10 @@ def _of(names: Iterable[str]) -> list[str]:
 
 
 def _place(name: str) -> Place:
-    """Where an object file is kept; it depends on this room, too."""
+    """Where an object file is kept; it depends on this folder, too."""
     if name != ENGINE:
         own = place(name)
     else:
         hashes = " ".join(dict.fromkeys(place(one).made_from for one in FUNCTIONS))
         own = Place(Path(loop.__file__), ENGINE, hashes)
-    return own._replace(made_from=f"{own.made_from} {room_hash('export')}")
+    return own._replace(made_from=f"{own.made_from} {folder_hash('export')}")

@@ -7,7 +7,8 @@ import numpy as np
 
 from sebody.contract.layout import RECORD
 from sebody.engine import control_data, kept_factors, sparse_lu
-from sebody.engine.state import ASKED, CLOCK, CONTROL, EVALUATED, REASONS, Record
+from sebody.engine.clock import CLOCK, CONTROL
+from sebody.engine.state import ASKED, EVALUATED, REASONS, Record
 from sebody.export.prepared import Prepared
 
 

@@ -42,7 +42,7 @@ class StiffnessSection:
     torsion : float
         GJ [force length^2].
     mass : float
-        Mass a length.
+        Mass a length [mass/length].
     inertia_x, inertia_y, inertia_z : float
         Rotary inertia a length about x, y and z [mass length]; may be zero.
     shear_y, shear_z : float, optional
@@ -104,7 +104,7 @@ class Section:
     poisson_ratio : float
         Poisson's ratio.
     density : float
-        Mass per volume.
+        Mass per volume [mass/length^3].
     shear_factor : float or (float, float), optional
         Shear correction factor k of the shear stiffness k G A, two for shear forces along y and
         z; None: no shear deformation (Euler-Bernoulli).

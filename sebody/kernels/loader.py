@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 from sebody.collector import without_collector
-from sebody.compiler.sources import TEXT, room_hash
+from sebody.compiler.sources import TEXT, folder_hash
 from sebody.contract.names import (
     ELEMENT,
     IN_PLANE,
@@ -24,7 +24,7 @@ from sebody.contract.names import (
 from sebody.errors import InputError
 
 DERIVE = "python -m sebody.derive"
-# written by hand, in this room
+# written by hand, in this folder
 BY_HAND = {element_name("user_force"): "sebody.kernels.user_force",
            element_name("continuous"): "sebody.kernels.continuous"}
 
@@ -53,7 +53,7 @@ def find(name: str) -> Path | None:
         return None
     lines = re.findall(r'^([A-Z]+) = "([^"]*)"', path.read_text(encoding="utf-8"), re.MULTILINE)
     facts = dict(lines)
-    if facts.get("ROOM") != room_hash(*TEXT):
+    if facts.get("SOURCES") != folder_hash(*TEXT):
         asked = [name.removeprefix(ELEMENT)]
         if name.startswith(SUPERELEMENT):
             asked = [facts.get(fact, "") for fact in ("LAYOUT", "FRAME", "INERTIA")]

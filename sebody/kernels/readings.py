@@ -30,7 +30,7 @@ from sebody.contract.law_row import (
 from sebody.kernels.ways import between, carried, turned, turning, way, way_rate
 
 
-@compiled
+@compiled(forceinline=True)
 def dot(x, first, c, place):
     """Product of three numbers and a vector, without what is multiplied by zero."""
     total = 0.0
@@ -46,7 +46,7 @@ def _back(R, first, c, place, i):
     return R[first + i]*c[place] + R[first + 3 + i]*c[place + 1] + R[first + 6 + i]*c[place + 2]
 
 
-@compiled
+@compiled(forceinline=True)
 def _forth(R, first, c, place, i):
     """Component i of a rotation matrix times a vector."""
     return (R[first + 3*i]*c[place] + R[first + 3*i + 1]*c[place + 1]
@@ -81,7 +81,7 @@ def reading(row, c, q, R, v, frames, last):
     return angle(R, one, two, c, last)
 
 
-@compiled
+@compiled(forceinline=True)
 def angle(R, one, two, c, last):
     """Angle of n of a body against n and m of another, or the ground; turns since `last` count."""
     along = across = 0.0

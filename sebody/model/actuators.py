@@ -47,15 +47,15 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
     rate : float, optional
         Largest rate of the input [input/time].
     lag : float
-        Time constant with which the force follows what is set.
+        Time constant with which the force follows what is set [time].
     inertia : float
-        Moment of inertia of the motor's rotor, which turns with the ratio. At rest in its body it
-        is part of this body's inertia.
+        Moment of inertia of the motor's rotor [mass length^2], which turns with the ratio. At rest
+        in its body it is part of this body's inertia.
     ratio : float
         Of a gear, or angle of the motor by displacement: the input is the motor's torque, and
         `ratio` times as much acts.
     start : float
-        Value until something is set.
+        Value until something is set [force] or [force length].
 
     Raises
     ------

@@ -108,10 +108,12 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
     Parameters
     ----------
     mass : float
+        Its mass [mass].
     inertia : (3, 3) or (3,), planar float
-        About the centre of mass, global axes at the start (three numbers: principal moments).
+        About the centre of mass, global axes at the start (three numbers: principal moments)
+        [mass length^2].
     centre : (3,), planar (2,), optional
-        Centre of mass at the start, global axes; the node by default.
+        Centre of mass at the start, global axes [length]; the node by default.
 
     Raises
     ------

@@ -40,12 +40,12 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
         drive of a way: of the second node along the axis, from the start; or the distance itself of
         two nodes.
     lower, upper : float, optional
-        Limits; at least one.
+        Limits [length] or [rad]; at least one.
     restitution : float
         Rate after an impact of the speed `at_speed` relative to that before; from 0.01 to 1. Slower
         impacts lose less.
     at_speed : float
-        This speed, of the angle, way or distance.
+        This speed, of the angle, way or distance [rad/time] or [length/time].
     stiffness : float
         k: force / length^n, or moment / angle^n.
     exponent : float
@@ -95,7 +95,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     on : Surface
         `sebody.plane`, `sebody.sphere` or `sebody.cylinder`, of the ground or of a node.
     radius : float
-        Of the sphere (in a plane of the disc); 0 for a point.
+        Of the sphere (in a plane of the disc) [length]; 0 for a point.
     stiffness : float
         k: force / length^n; Hertz's is ``4/3 E* sqrt(R)`` with n = 1.5.
     friction, static : float

@@ -52,8 +52,8 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
     outputs : iterable of str
         Names of actuators. A name that no actuator has is a signal, for other controllers.
     period : float, optional
-        Time between two samples; the first is at the start. Fixed steps divide it. Without one the
-        controller is continuous.
+        Time between two samples [time]; the first is at the start. Fixed steps divide it. Without
+        one the controller is continuous.
     delay : float
         Samples after which outputs act, also parts of one, such as 0.3 for the time that a
         controller computes; until then the actuators' start values do.
@@ -66,7 +66,7 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
         the rates, then u, by y, then x: D is (states + outputs, inputs + states). By default they
         are central differences.
     corners : sequence of float
-        Times at which a continuous law jumps: steps end there.
+        Times at which a continuous law jumps [time]: steps end there.
 
     Raises
     ------

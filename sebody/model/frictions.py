@@ -57,21 +57,23 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     radius : float, optional
         Where the friction acts; needed where the joint turns [length].
     preload : float
-        Normal force that is always there.
+        Normal force that is always there [force].
     arm : float, optional
-        Arm on which the joint takes moments across its axis; without it they press nothing.
+        Arm on which the joint takes moments across its axis [length]; without it they press
+        nothing.
     reaction : bool
         Whether the force in the joint presses; else the preload alone does.
     bristle : float, optional
         Stiffness of sticking, force/length or moment/angle. By default that with which the mass
         that the joint sees vibrates with the period 2 pi h of a step h.
     slip : float, optional
-        In place of `bristle`: displacement, or angle, at which it gives way under the preload.
+        In place of `bristle`: displacement [length], or angle [rad], at which it gives way under
+        the preload.
     damping : float
         Of this vibration, relative to the critical one.
     speed : float
-        Reference speed of a smooth law without sticking (Brown and McPhee), for gradients;
-        0 for bristles.
+        Reference speed of a smooth law without sticking (Brown and McPhee), for gradients
+        [length/time] or [rad/time]; 0 for bristles.
 
     Returns
     -------

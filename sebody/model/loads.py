@@ -123,7 +123,7 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         ``function(t, x, v, force)`` with arrays of all coordinates, node after node; it sets
         `force`, which is zero before. Numba compiles it; derivatives are central differences.
     corners : sequence of float
-        Times at which the forces jump: steps end there.
+        Times at which the forces jump [time]: steps end there.
 
     Raises
     ------

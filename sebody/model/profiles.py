@@ -49,6 +49,7 @@ def trapezoidal(distance: float, speed: float, acceleration: float, start: float
     Parameters
     ----------
     distance : float
+        From the first to the last position [length] or [rad].
     speed, acceleration : float
         Largest ones, positive; the sign is that of the distance.
 

@@ -30,9 +30,9 @@ def sensor(model: Mechanism, name: str, quantity: str, rate: float | None = None
     delay : int
         Samples by which the value is late; needs a rate.
     bias : float
-        Added to the quantity.
+        Added to the quantity, in its unit.
     noise : float
-        Standard deviation of normal noise, independent from sample to sample.
+        Standard deviation of normal noise in that unit, independent from sample to sample.
     seed : int
         Of the noise: the same seed gives the same numbers.
     axes : Node or str, optional

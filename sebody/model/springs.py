@@ -21,9 +21,9 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
     Parameters
     ----------
     stiffness, damping, cubic : float
-        k, c and k3.
+        k, c and k3 [force/length, force time/length, force/length^3].
     length : float, optional
-        Length without force; the initial length by default.
+        Length without force [length]; the initial length by default.
 
     Raises
     ------

@@ -43,8 +43,9 @@ def sphere(radius: float, point: ArrayLike | None = None, node: Node | str | Non
     Parameters
     ----------
     radius : float
+        Its radius [length].
     point : (3,) or (2,), optional
-        Its centre on the ground, the origin by default.
+        Its centre on the ground [length], the origin by default.
     node : Node or str, optional
         Node at its centre that carries it.
     inside : bool

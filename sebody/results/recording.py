@@ -88,7 +88,7 @@ class Recording:
 
     @cached_property
     def counters(self) -> NDArray:
-        """Steps, iterations and others, in the order of `engine.state.CONTROL`."""
+        """Steps, iterations and others, in the order of `engine.clock.CONTROL`."""
         return numbers_of(self.arrays_of_loop[1].control).copy()
 
     @cached_property

@@ -9,8 +9,8 @@ from pathlib import Path
 from numpy.typing import NDArray
 
 from sebody import inputs
+from sebody.engine.clock import CONTROL
 from sebody.engine.scalars import record
-from sebody.engine.state import CONTROL
 from sebody.model.summary import table
 from sebody.results import dataframes, naming, quantities
 from sebody.results.advice import kernels_that_pay

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
 from sebody.contract.layout import RECORD_T
-from sebody.engine.state import CONTROL
+from sebody.engine.clock import CONTROL
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.files.array_files import json_of, opened

@@ -11,19 +11,9 @@ from numpy.typing import NDArray
 
 from sebody import inputs
 from sebody.contract.layout import RECORD_T
+from sebody.engine.clock import CLOCK, CONTROL
 from sebody.engine.scalars import numbers_of, record
-from sebody.engine.state import (
-    AHEAD,
-    CLOCK,
-    CONTROL,
-    EVALUATED,
-    FINEST,
-    JUMP,
-    REASONS,
-    SOLVED,
-    Scheme,
-    State,
-)
+from sebody.engine.state import AHEAD, EVALUATED, FINEST, JUMP, REASONS, SOLVED, Scheme, State
 from sebody.errors import InputError
 from sebody.files import check_target, replacing
 from sebody.files.array_files import json_of, opened

@@ -61,7 +61,7 @@ def energy_gain(model: Model, until: float) -> EnergyGain:
     ----------
     model : Model
     until : float
-        Time after which loads do no more work.
+        Time after which loads do no more work [time].
 
     Returns
     -------

@@ -72,7 +72,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     Parameters
     ----------
     spin : (3,) array_like or float, optional
-        Angular velocity of the axes the motion is described in: that of a steady rotation.
+        Angular velocity [1/time] of the axes the motion is described in: that of a steady rotation.
         Without one, the matrices of a moving state are those of the instant.
 
     Raises

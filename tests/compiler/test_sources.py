@@ -1,10 +1,10 @@
-"""Fingerprints of code: what changes them, what does not, and that no room drops out unseen."""
+"""Fingerprints of code: what changes them, what does not, and that no folder drops out unseen."""
 
 import pytest
 from numba import config
 
 from sebody.compiler import sources
-from sebody.compiler.sources import function_hash, room_hash, syntax
+from sebody.compiler.sources import folder_hash, function_hash, syntax
 
 MODULE = '''"""A title."""
 LIMIT = 0.5
@@ -18,7 +18,7 @@ def inside(x):
 
 @pytest.fixture
 def package(tmp_path, monkeypatch):
-    """A package with two rooms, one of them with a room inside."""
+    """A package with two folders, one of them with a folder inside."""
     for name in ("kernels/a.py", "kernels/inner/b.py", "engine/c.py"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -32,7 +32,7 @@ def package(tmp_path, monkeypatch):
 
 def _forget():
     """Hashes are taken once in a process."""
-    room_hash.cache_clear()
+    folder_hash.cache_clear()
     sources._syntax_hash.cache_clear()
 
 
@@ -51,26 +51,26 @@ def test_code_and_constants_count(old, new):
 
 
 @pytest.mark.parametrize("name", ["kernels/a.py", "kernels/inner/b.py"])
-def test_every_module_of_a_room_counts(package, name):
-    before = room_hash("kernels"), room_hash("engine")
+def test_every_module_of_a_folder_counts(package, name):
+    before = folder_hash("kernels"), folder_hash("engine")
     (package / name).write_text(MODULE.replace("0.5", "0.25"))
     _forget()
-    assert room_hash("kernels") != before[0]
-    assert room_hash("engine") == before[1]
+    assert folder_hash("kernels") != before[0]
+    assert folder_hash("engine") == before[1]
 
 
 def test_comments_leave_the_hash(package):
-    before = room_hash("kernels", "engine")
+    before = folder_hash("kernels", "engine")
     (package / "kernels/a.py").write_text(MODULE.replace("strictly", "really"))
     _forget()
-    assert room_hash("kernels", "engine") == before
+    assert folder_hash("kernels", "engine") == before
 
 
 def test_a_module_that_moves_counts(package):
-    before = room_hash("kernels")
+    before = folder_hash("kernels")
     (package / "kernels/a.py").rename(package / "kernels/d.py")
     _forget()
-    assert room_hash("kernels") != before
+    assert folder_hash("kernels") != before
 
 
 def test_a_folder_that_moves_with_its_cache_counts(package):
@@ -96,10 +96,10 @@ def test_a_folder_that_moves_with_its_cache_counts(package):
         assert found(package / new / "inner/b.py") != before
 
 
-def test_a_room_that_is_moved_or_empty_is_an_error(package):
+def test_a_folder_that_is_moved_or_empty_is_an_error(package):
     (package / "kernels").rename(package / "elsewhere")
     (package / "engine/c.py").unlink()
-    for room in ("kernels", "engine"):
-        with pytest.raises(FileNotFoundError, match=f"{package / room} holds no modules: its hash "
-                           "would be empty"):
-            room_hash(room)
+    for folder in ("kernels", "engine"):
+        with pytest.raises(FileNotFoundError, match=f"{package / folder} holds no modules: its "
+                           "hash would be empty"):
+            folder_hash(folder)

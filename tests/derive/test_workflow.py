@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from copies import ROOT, copy_sources, derive, duplicate, edit, python
 
-from sebody.compiler.sources import TEXT, room_hash
+from sebody.compiler.sources import TEXT, folder_hash
 from sebody.derive.compiler import compile_kernel
 
 MANIFEST = '''"""A small manifest."""
@@ -68,7 +68,7 @@ from numba import njit
 from sebody.engine.arrays import Arrays
 from sebody.engine.elimination import eliminate
 from sebody.engine.scalars import record
-from sebody.engine.state import CLOCK, CONTROL
+from sebody.engine.clock import CLOCK, CONTROL
 from sebody.engine.step import cut_step
 from sebody.kernels.abi import at, padded, pointer_to
 from sebody.kernels.frame_search import converged_mean, planar_relative_angles
@@ -207,8 +207,8 @@ def test_compiled_functions_follow_what_they_call(original, tmp_path, file, old,
 def test_shipped_kernels_name_no_version_of_the_runtime():
     """Only those that are kept elsewhere do, where nothing else says that they are outdated."""
     texts = [path.read_text() for path in (ROOT / "generated").glob("*_*.py")]
-    assert len(texts) > 70 and not any("ROOM" in text for text in texts)
-    assert f'ROOM = "{room_hash(*TEXT)}"' in compile_kernel("planar_force", shipped=False)
+    assert len(texts) > 70 and not any("SOURCES" in text for text in texts)
+    assert f'SOURCES = "{folder_hash(*TEXT)}"' in compile_kernel("planar_force", shipped=False)
 
 
 def test_one_kernel_of_the_catalogue(original, tmp_path):

@@ -5,7 +5,7 @@ import pytest
 
 from sebody import Model, Simulation, Tolerance, generalized_alpha, piecewise
 from sebody.assembly import batches
-from sebody.compiler.sources import TEXT, room_hash
+from sebody.compiler.sources import TEXT, folder_hash
 from sebody.kernels import loader
 from sebody.model.parts import Element, positions
 
@@ -22,7 +22,7 @@ INERTIAL = POWER = DRIVEN = False
 READS = 0
 MEMORY = ()
 WORK_ROWS, OPERATIONS = 0, {"residual": (0, 0, 0, 0), "column": (0, 0, 0, 0)}
-ROOM = "HASH"
+SOURCES = "HASH"
 
 
 @kernel_function
@@ -54,7 +54,7 @@ def test_forces_that_depend_on_multipliers(how, tmp_path, monkeypatch):
 
     A pressure on it sets in at 0.5: accelerations are constant on either side, so all is exact.
     """
-    text = GRIP.replace("HASH", room_hash(*TEXT))
+    text = GRIP.replace("HASH", folder_hash(*TEXT))
     (tmp_path / "element_grip.py").write_text(text)
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     monkeypatch.setattr(loader, "load", loader.load.__wrapped__)       # not remembered

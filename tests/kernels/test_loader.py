@@ -5,13 +5,13 @@ import sys
 import pytest
 
 from sebody import InputError
-from sebody.compiler.sources import TEXT, room_hash
+from sebody.compiler.sources import TEXT, folder_hash
 from sebody.kernels import loader
 
 KERNEL = '''LAYOUT = "planar-f9"
 FRAME = "mean"
 INERTIA = "frame_axes"
-ROOM = "{room}"     # of today
+SOURCES = "{sources}"     # of today
 TOUCHED = True
 '''
 NAME = "superelement_planar_f9_mean_frame_axes"
@@ -67,13 +67,13 @@ def test_missing_kernels(mine):
 
 
 def test_kernel_of_the_user(mine):
-    (mine / f"{NAME}.py").write_text(KERNEL.format(room=room_hash(*TEXT)))
+    (mine / f"{NAME}.py").write_text(KERNEL.format(sources=folder_hash(*TEXT)))
     assert loader.superelement_kernel_name("planar-f9", "mean", "frame_axes", 2) == NAME
     assert loader.load(NAME).TOUCHED
 
 
-@pytest.mark.parametrize("text", [KERNEL.format(room="of 0.0.1"),
-                                  KERNEL.replace("ROOM", "LEAVES")])
+@pytest.mark.parametrize("text", [KERNEL.format(sources="of 0.0.1"),
+                                  KERNEL.replace("SOURCES", "LEAVES")])
 def test_kernel_of_another_version_is_refused(mine, text):
     (mine / f"{NAME}.py").write_text(text)
     for act in (loader.find, loader.load):

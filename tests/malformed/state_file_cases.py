@@ -4,7 +4,7 @@ import numpy as np
 from malformed.read_files import KINDS
 from malformed.tampering import Packed, bomb, entry, member, raw, text, without
 
-from sebody.engine.state import CONTROL
+from sebody.engine.clock import CONTROL
 
 RESTART = {
     "negative control": Packed("holds -1 in control for grid", entry("control", 1, -1)),

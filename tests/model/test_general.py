@@ -155,11 +155,11 @@ def test_scratch_memory_is_that_of_the_nodes():
 
 def test_a_specialised_kernel_of_the_user_comes_first(monkeypatch, tmp_path):
     """Found by name, not run."""
-    from sebody.compiler.sources import TEXT, room_hash
+    from sebody.compiler.sources import TEXT, folder_hash
 
     monkeypatch.setenv("SEBODY_KERNELS", str(tmp_path))
     kernel = tmp_path / "superelement_f5_converged_mean_floating_field.py"
-    kernel.write_text(f'ROOM = "{room_hash(*TEXT)}"')
+    kernel.write_text(f'SOURCES = "{folder_hash(*TEXT)}"')
     model = Model()
     place(model, "long", beam(["full"] * 5), (0, 0, 0))
     assert model.element("long").kernel == "superelement_f5_converged_mean_floating_field"

@@ -34,7 +34,7 @@ from sebody.compiler.inside.names import (
     register_pass,
     take_reloads,
 )
-from sebody.compiler.sources import KERNELS, in_room
+from sebody.compiler.sources import KERNELS, in_folder
 
 
 class _Library(JITCodeLibrary):
@@ -89,7 +89,7 @@ class _CalleeLowering(_EntryLowering):
     def run_pass(self, state):
         library = _Library(state.targetctx.codegen(), state.func_id.func_qualname)
         # kernels are slower by a twentieth where their products are not optimized on their own
-        library.optimized = in_room(state.func_id.func, KERNELS)
+        library.optimized = in_folder(state.func_id.func, KERNELS)
         state.library, flags = library, state.flags
         flags.noalias = getattr(state.func_id.func, "apart", False)
         flags.no_cpython_wrapper = flags.no_cfunc_wrapper = flags.no_compile = True
@@ -159,7 +159,7 @@ class Function(CPUDispatcher):
         self._cache = FunctionCache(function, made_from)
         self._made_from = made_from
         # constants make kernels faster; elsewhere they come with the code that callers take in
-        self._specialized = in_room(function, KERNELS)
+        self._specialized = in_folder(function, KERNELS)
         self.in_lanes: Function | None = None       # what is called with lanes in its place
 
     @cached_property        # most runs compile nothing

@@ -1,6 +1,6 @@
 """The time loop for eight members of an ensemble at a time.
 
-Of the fast way to compile alone. Importing this room puts in place what the loop's functions and
+Of the fast way to compile alone. Importing this package puts in place what the loop's functions and
 kernels call for lanes.
 """
 

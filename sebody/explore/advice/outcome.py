@@ -99,7 +99,7 @@ class Advice:
     model : Model
         It; the given one stays as it was.
     step : float
-        Its time step, or the grid of its variable steps.
+        Its time step, or the grid of its variable steps [time].
     changes : tuple of str
         What was changed, in sentences.
     error : float
@@ -114,9 +114,9 @@ class Advice:
     predicted : float
         Error that was predicted before its run.
     seconds : float
-        Time of its run.
+        Time of its run [s].
     t_end : float
-        End of its run.
+        End of its run [time].
     lines : tuple of str
         Calls of `sebody.model.variants` that make it from the given model.
     reasons : tuple of Reason
