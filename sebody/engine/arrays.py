@@ -4,6 +4,7 @@ A named tuple would be passed array by array, seven words each: with a hundred a
 takes a minute. Members are read without reference counts, which cost as much as a small element.
 """
 
+from collections.abc import Iterable
 from ctypes import addressof, c_char
 from dataclasses import fields
 from functools import cache
@@ -13,6 +14,7 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import NativeValue, models, register_model, unbox
+from numpy.typing import NDArray
 
 from sebody.compiler.choice import way
 from sebody.compiler.sources import CODE, folder_hash
@@ -49,6 +51,29 @@ class Arrays:
         # compiled functions read the type of an argument from this attribute
         self.__dict__.update(_words=words, _facts=facts, _address=words.ctypes.data,
                              _numba_type_=_view(type(self), facts, SOURCES))
+
+    def in_rows(self, arrays: Iterable[NDArray]) -> NDArray:
+        """Words of groups whose arrays lie in the rows of some arrays as those of this one do.
+
+        Compiled code takes the address of such a row in place of a group: to make eight groups
+        takes longer than many runs.
+
+        Parameters
+        ----------
+        arrays : iterable of (rows, ...)
+            C-contiguous; arrays of this group are parts of their first rows. All others are shared.
+
+        Returns
+        -------
+        (rows, words)
+        """
+        arrays = list(arrays)
+        words = np.tile(self._words, (len(arrays[0]), 1))
+        for one in arrays:
+            place, size = self._words - one.ctypes.data, one.strides[0]
+            own = (place >= 0) & (place < size)
+            words[:, own] += size * np.arange(len(one))[:, np.newaxis]
+        return words
 
 
 @cache

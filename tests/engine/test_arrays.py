@@ -50,6 +50,22 @@ def test_members_are_read_and_written_in_place():
     assert outer.inner.table[1].tolist() == [2.0, 3.0, 4.0]
 
 
+def test_groups_in_the_rows_of_arrays_have_the_words_of_groups_made_of_them():
+    """Of all members but one, which is shared; an empty one is part of no row."""
+    values, tables, shared = np.zeros((3, 4)), np.zeros((3, 2, 3)), np.array([2, 0])
+    flags = np.zeros((3, 0), dtype=np.int64)
+
+    def made(k):
+        return Outer(values[k, 1:], Inner(shared, tables[k]), flags[k])
+
+    words = made(0).in_rows([values, tables])
+    for k in range(3):
+        expected = made(k)._words.tolist()
+        empty = made(0)._words.tolist()[-2:]
+        assert words[k].tolist() == [*expected[:-2], *empty]
+    assert words.ndim == 2 and len(np.unique(words[:, 0])) == 3
+
+
 def test_one_compiled_version_serves_all_sizes():
     read(group())
     other = Outer(np.zeros(9), Inner(np.array([8]), np.zeros((5, 4))), np.arange(30))

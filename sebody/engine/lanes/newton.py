@@ -35,12 +35,11 @@ HUGE = 1e300            # a norm above this is no number, or as good as none
 @compiled(forceinline=True)
 def correct(system, state, scheme, active, iteration, mixed):
     """Subtract the correction of the active members; returns those that have to go on."""
-    clock, control, h = state.clock, state.control, state.clock.current_step
-    n, regularized = system.diagonal.size, control.regularized == 1
-    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
-                                 norms(system, state, n))
+    clock, h, n = state.clock, state.clock.current_step, system.diagonal.size
+    norm, size, accelerations = (
+        regularized_norms(system, state, n) if state.control.regularized == 1 else
+        norms(system, state, n))
     none = active & ~(norm < HUGE)
-    failed = none
     if some(none):      # their step is made anew: nothing of them is kept
         active = active & ~none
         for i in range(n):
@@ -52,6 +51,13 @@ def correct(system, state, scheme, active, iteration, mixed):
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
     clock.acceleration_norm = where(active, accelerations, clock.acceleration_norm)
     clock.target = target
+    return _verdict(system, state, scheme, active, none, norm, left_norm, iteration)
+
+
+@compiled(forceinline=True)
+def _verdict(system, state, scheme, active, none, norm, left_norm, iteration):
+    """Count the iteration; the active members that have to go on. Those whose norm is none fail."""
+    clock, control, target = state.clock, state.control, state.clock.target
     rate, last = clock.contraction, clock.last_norm
     if iteration == 0:
         clock.span = where(active, norm / target, clock.span)
@@ -63,7 +69,7 @@ def correct(system, state, scheme, active, iteration, mixed):
     control.iterations += count
     clock.last_norm = where(active, left_norm, last)
     rate = min(max(rate, spread(UNSURE if iteration == 0 else FASTEST)), spread(SLOWEST))
-    done = active & (rate / (1.0 - rate) * left_norm <= target)
+    done, failed = active & (rate / (1.0 - rate) * left_norm <= target), none
     if iteration > 2:       # where new matrices do not help, what is left is rounding
         hopeless = active & ~done & (control.fresh > 2.0) & (rate > 0.9)
         rounded = left_norm <= ROUNDED * target
@@ -71,7 +77,7 @@ def correct(system, state, scheme, active, iteration, mixed):
         done = done | (hopeless & rounded)
     if some(done):
         failed = failed | (done & _strayed(system, state, scheme))
-        if regularized:
+        if control.regularized == 1:
             failed = failed | (done & leaves_gap(system, state, norm, scheme.stabilized))
     left = active & ~done & ~failed
     if some(left):

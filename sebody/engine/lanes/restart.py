@@ -54,13 +54,7 @@ def restart(system, state, scratch, alone, active, dense):
         evaluated = going & (control.wanted == float(EVALUATED))
         _evaluate(system, state, scratch, going)
         if some(evaluated):
-            failed = evaluated & ~factorize_masses(state, alone, scratch.frames, dense, evaluated)
-            one = where(evaluated, spread(1.0), spread(0.0))
-            control.wanted = where(evaluated, spread(float(KEPT)), control.wanted)
-            control.fresh += one
-            control.matrices += one
-            control.reason = where(failed, spread(GAVE_UP), control.reason)
-            going = going & ~failed
+            going = going & ~_factorize(state, alone, scratch.frames, dense, evaluated)
         solve(system, state, dense)
         for i in range(system.diagonal.size):
             state.correction[i] = where(going, state.correction[i], spread(0.0))
@@ -75,6 +69,19 @@ def restart(system, state, scratch, alone, active, dense):
     control.iteration = where(active, control.iteration, corrections)
     control.fresh = where(active, spread(1.0), fresh)
     _keep_the_others(system, state, scratch, active)
+
+
+@compiled
+def _factorize(state, alone, begun, dense, wanted):
+    """Make the matrices of some members; returns those that have none, and give up."""
+    control = state.control
+    failed = wanted & ~factorize_masses(state, alone, begun, dense, wanted)
+    one = where(wanted, spread(1.0), spread(0.0))
+    control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
+    control.fresh += one
+    control.matrices += one
+    control.reason = where(failed, spread(GAVE_UP), control.reason)
+    return failed
 
 
 @compiled

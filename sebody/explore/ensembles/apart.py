@@ -1,6 +1,6 @@
 """Arrays for members in lanes that go on alone for a while."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 from numba import typeof, types
@@ -14,7 +14,6 @@ from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import Record, Scheme, State
 from sebody.engine.system import System
-from sebody.explore.ensembles.member import arrays_of_run
 
 NEVER = 2**62       # grid steps between records of members that are alone
 RECORDS = "control", "clock", "guard"
@@ -22,7 +21,7 @@ RECORDS = "control", "clock", "guard"
 
 def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes: NDArray,
               in_lanes: State, routine: int) -> tuple[Apart, list]:
-    """Arrays of eight members, and what keeps them alive.
+    """Arrays of eight members, and what else their addresses lead to.
 
     Parameters
     ----------
@@ -40,13 +39,17 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     """
     one = of[1]
     numbers = np.zeros((MEMBERS, offsets.size))
+    system, state = offsets.packed(of[0], numbers[0]), offsets.packed(one, numbers[0])
+    numbers[1:] = numbers[0]
     scalars = {name: np.tile(numbers_of(getattr(one, name)), (MEMBERS, 1)) for name in RECORDS}
-    runs = []
-    for k, own in enumerate(numbers):
-        system, state = arrays_of_run(*of, offsets, own)
-        records = {name: record(getattr(one, name).dtype, rows[k])
-                   for name, rows in scalars.items()}
-        runs.append((system, _with(state, records)))
+    flags = {own.name: np.array([value] * MEMBERS) for own in fields(State)
+             if isinstance(value := getattr(one, own.name), np.ndarray)
+             and value.dtype != np.float64}
+    state = replace(state, **{name: rows[0] for name, rows in flags.items()},
+                    **{name: record(getattr(one, name).dtype, rows[0])
+                       for name, rows in scalars.items()})
+    rows = [numbers, *scalars.values(), *flags.values()]
+    words = [group.in_rows(rows) for group in (system, state)]
     unwritten = Record.of(one, 0, NEVER)
     return Apart(
         places=_places(one, offsets, slots), lanes=lanes, numbers=numbers,
@@ -55,15 +58,10 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
         **{f"{name}_words": _words(getattr(in_lanes, name)) for name in RECORDS},
         **{f"{name}_in_lanes": memory_of(getattr(in_lanes, name), np.float64) for name in RECORDS},
         whole_in_lanes=memory_of(in_lanes.control, np.int64),
-        addresses=np.array([[group._address for group in run] for run in runs]),
-        system=runs[0][0], state=runs[0][1], record=unwritten,
-        routines=np.array([routine, 0])), runs
-
-
-def _with(state: State, others: dict[str, np.record]) -> State:
-    """A state with other records of scalars."""
-    return State(**{one.name: others.get(one.name, getattr(state, one.name))
-                    for one in fields(State)})
+        addresses=np.array([[own[member].ctypes.data for own in words]
+                            for member in range(MEMBERS)]),
+        system=system, state=state, record=unwritten,
+        routines=np.array([routine, 0])), [*words, *rows]
 
 
 def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
