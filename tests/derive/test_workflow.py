@@ -88,7 +88,7 @@ def near_half_a_turn():
 
 @njit
 def factors(starts, rows, diagonal, unknowns, matrix, column, scale):
-    return eliminate(0, 2, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
+    return eliminate(0, 2, False, pointer_to(starts), pointer_to(rows), pointer_to(diagonal),
                      at(pointer_to(starts), 1), pointer_to(unknowns), pointer_to(matrix),
                      pointer_to(column), pointer_to(scale))
 

@@ -21,20 +21,20 @@ from sebody.scenes import chain
 
 
 @njit
-def factorized(pattern, matrix, column, scale):
+def factorized(pattern, regularized, matrix, column, scale):
     unknowns = np.arange(LANES * pattern.diagonal.size)
     return elimination.eliminate(
-        0, pattern.diagonal.size, pointer_to(pattern.starts), pointer_to(pattern.rows),
-        pointer_to(pattern.diagonal), at(pointer_to(pattern.starts), 1), pointer_to(unknowns),
-        pointer_to(matrix), pointer_to(column), pointer_to(scale))
+        0, pattern.diagonal.size, regularized, pointer_to(pattern.starts),
+        pointer_to(pattern.rows), pointer_to(pattern.diagonal), at(pointer_to(pattern.starts), 1),
+        pointer_to(unknowns), pointer_to(matrix), pointer_to(column), pointer_to(scale))
 
 
 @njit
-def substituted(pattern, factors, x):
+def substituted(pattern, regularized, factors, x):
     across, starts = pattern.diagonal.size, pointer_to(pattern.starts)
     elimination.substitute(0, across, at(starts, 1), pointer_to(pattern.rows),
                            pointer_to(pattern.diagonal), pointer_to(factors), pointer_to(x))
-    elimination.substitute_back(0, across, starts, pointer_to(pattern.rows),
+    elimination.substitute_back(0, across, regularized, starts, pointer_to(pattern.rows),
                                 pointer_to(pattern.diagonal), pointer_to(factors), pointer_to(x))
 
 
@@ -48,27 +48,28 @@ def system(n, seed, links):
     return row, column, value
 
 
-def solved(pattern, slot, row, column, value, b):
+def solved(pattern, slot, row, column, value, b, regularized=False):
     """Solution by slots, all of them."""
     slots = LANES * len(pattern.diagonal)
     matrix = np.zeros(len(pattern.rows) * LANES**2)
     np.add.at(matrix, elimination_pattern.entries(pattern, slot[row], slot[column]), value)
     free = np.setdiff1d(np.arange(slots), slot)
     matrix[elimination_pattern.entries(pattern, free, free)] = 1.0
-    assert factorized(pattern, matrix, np.zeros(LANES * slots), np.ones(slots))
+    assert factorized(pattern, regularized, matrix, np.zeros(LANES * slots), np.ones(slots))
     x = np.zeros(slots)
     x[slot] = b
-    substituted(pattern, matrix, x)
+    substituted(pattern, regularized, matrix, x)
     assert not x[free].any()
     return x
 
 
+@pytest.mark.parametrize("regularized", [False, True])
 @pytest.mark.parametrize("n, links", [(4, 3), (17, 30), (63, 100), (200, 500)])
-def test_solves_what_scipy_solves(n, links):
+def test_solves_what_scipy_solves(n, links, regularized):
     row, column, value = system(n, n, links)
     b = np.random.default_rng(0).normal(size=n)
     pattern = elimination_pattern.block_pattern(row, column, n)
-    x = solved(pattern, np.arange(n), row, column, value, b)
+    x = solved(pattern, np.arange(n), row, column, value, b, regularized)
     exact = spsolve(csc_matrix((value, (row, column)), shape=(n, n)), b)
     # diagonally dominant, a condition below two: EPS times the terms of a row and its fill
     assert np.abs(x[:n] - exact).max() < 1e-12 * np.abs(exact).max()
@@ -129,7 +130,7 @@ def test_a_small_pivot_is_noticed():
     pattern = elimination_pattern.block_pattern(row, column, 5)
     matrix = np.zeros(len(pattern.rows) * LANES**2)
     matrix[elimination_pattern.entries(pattern, row, column)] = [1.0, 1.0, 1e-12, 1.0, 1.0]
-    assert not factorized(pattern, matrix, np.zeros(2 * LANES**2), np.ones(8))
+    assert not factorized(pattern, False, matrix, np.zeros(2 * LANES**2), np.ones(8))
 
 
 def test_every_entry_has_its_place():

@@ -121,6 +121,12 @@ def condensed_matrix(system, state, k, evaluated):
     return evaluated
 
 
+@in_lanes_of(elimination.invert_factors)
+def invert_factors(D, factors, unknowns, scale):
+    """Of regularized matrices, which are never made together."""
+    return False
+
+
 @in_lanes_of(elimination.invert_block)
 def invert_block(D, inverse, unknowns, scale):
     """Invert a block; of members whose pivot is small it becomes no number."""
