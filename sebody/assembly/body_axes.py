@@ -118,13 +118,17 @@ def grouped(mass: NDArray, stiffness: NDArray) -> NDArray:
 def without_rounding(values: InertiaInvariants, of_stresses: float) -> InertiaInvariants:
     """Constants with zeros where rotations and sums leave but rounding.
 
+    What an entry can be follows from the sizes of its coordinates' displacements. Rates have no
+    larger mass, but slaved coordinates may have one of rounding where the rates count by their
+    rigid part (`InertiaInvariants.rigidly_followed`), as in symmetric bodies.
+
     Parameters
     ----------
     of_stresses : float
         The same as `ROUNDING`, of geometric stiffnesses.
     """
     i, n = values, len(values.E)
-    of_z = np.sqrt(np.abs(np.diag(i.Mbar)))
+    of_z = np.sqrt(np.maximum(np.abs(np.diag(i.Mbar)), np.abs(np.einsum("kkii->i", i.J2))))
     Ghat = [_small(one, of_z[:n], of_stresses) for one in i.Ghat]
     return replace(
         i, K=_small(i.K, of_z, ROUNDING), J2=_small(i.J2, of_z, ROUNDING),
