@@ -226,6 +226,8 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
     With the columns whose entries all belong to a group: it may reach into those of the next one.
     """
     columns = stack.shape[2]
+    if not columns:     # of a body with one interface and no modes, which is rigid
+        return
     filled = (stack != 0.0).reshape(-1, LANES, columns).any(axis=1)
     common, either = ((one(filled[:, 1:], filled[:, :-1])).sum(axis=0)
                       for one in (np.logical_and, np.logical_or))
