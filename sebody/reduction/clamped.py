@@ -14,6 +14,7 @@ from sebody.reduction.watch import SILENT, Watch
 
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
 _REPEATED = 1e-6  # relative distance below which eigenvalues or components count as equal
+_MORE = 4  # modes that are computed beyond those asked for, so that no repeated frequency is cut
 _HELD = 1e-10  # singular value of the means of free motions below which a motion is not held
 _REMEDY = "keep more boundary nodes or DOF blocks, or connect loose parts"
 
@@ -168,14 +169,24 @@ class ClampedInterior:
         """At least the lowest modes, of internal DOFs, in a form that a solver does not choose."""
         if not modes:
             return np.zeros(0), np.zeros((len(self.internal), 0))
-        # a few more, so that a repeated frequency is not cut in two
-        wanted = min(self.count, modes + 4)
-        size = len(self.internal)
-        if size <= _DENSE_LIMIT or wanted >= size:
-            omega_squared, inner = self._dense_modes(wanted)
-        else:
-            omega_squared, inner = self._sparse_modes(wanted)
-        return omega_squared, inner @ canonical_turn(omega_squared, inner)
+        more, size = _MORE, len(self.internal)
+        while True:
+            wanted = min(self.count, modes + more)
+            if size <= _DENSE_LIMIT or wanted >= size:
+                omega_squared, inner = self._dense_modes(wanted)
+            else:
+                omega_squared, inner = self._sparse_modes(wanted)
+            if len(omega_squared) < modes + more or not _equal(*omega_squared[[modes - 1, -1]]):
+                return omega_squared, inner @ canonical_turn(omega_squared, inner)
+            more *= 4
+
+    def left_out(self, modes: int) -> int:
+        """How many modes beyond the lowest ones have the frequency of the last of these."""
+        if not modes:
+            return 0
+        self.lowest(modes)
+        values = self._known[0]
+        return sum(_equal(values[modes - 1], value) for value in values[modes:])
 
     def _dense_modes(self, wanted: int) -> tuple[NDArray, NDArray]:
         # The inverse problem: low modes to full accuracy, and massless DOFs do no harm.
@@ -206,6 +217,10 @@ class ClampedInterior:
         return eigsh(self._stiffness, wanted, self._mass, sigma=0.0, OPinv=inverse, v0=start)
 
 
+def _equal(one: NDArray, other: NDArray) -> NDArray:
+    return np.abs(one - other) <= _REPEATED * np.maximum(one, other)
+
+
 def canonical_turn(values: NDArray, shapes: NDArray) -> NDArray:
     """Orthogonal turn (m, m) of shapes (n, m) that have equal values among themselves.
 
@@ -214,7 +229,7 @@ def canonical_turn(values: NDArray, shapes: NDArray) -> NDArray:
     there: a beam of square section gets modes in its principal planes.
     """
     whole = np.eye(len(values))
-    gaps = np.abs(np.diff(values)) > _REPEATED * np.maximum(values[1:], values[:-1])
+    gaps = ~_equal(values[1:], values[:-1])
     for group in np.split(np.arange(len(values)), np.flatnonzero(gaps) + 1):
         for position in range(len(group)):
             rest = shapes @ whole[:, group[position:]]

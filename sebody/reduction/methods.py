@@ -116,9 +116,13 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
                     "dynamic stiffness of the interface")
             notes.append(f"{what} within {error:.2g} up to the frequency {wanted.up_to:g}")
         component = static.with_vibrations(interior, modes, select)
+        left_out = interior.left_out(modes) if select is None else 0
     else:
         free = _FreeModes(edge, *matrices, modes, watch)
-        component = free.component(static, interior)
+        component, left_out = free.component(static, interior), free.left_out
+    if left_out:
+        count = len(component.omega_squared if free is None else free.squares)
+        notes.append(_of_equal_frequency(count, left_out))
     forces = edge.ties.gather(forces)
     if residual_modes:
         component = with_residual_modes(component, interior, matrices[1], forces)
@@ -156,6 +160,13 @@ def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT
         static = static.with_rigid(rigid, edge.values(rigid), strainless_coordinates(
             edge.keeps, edge.coordinates.shape[1]))
     return (stiffness, mass), interior, static
+
+
+def _of_equal_frequency(modes: int, left_out: int) -> str:
+    """That a repeated frequency is cut: the body is less symmetric than the structure."""
+    others = f"the {left_out} next ones, which are" if left_out > 1 else "the next one, which is"
+    return (f"the last of {modes} modes has the frequency of {others} left out: the body is less "
+            f"symmetric than its FE model, with {modes + left_out} modes it is not")
 
 
 def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None,
@@ -197,6 +208,7 @@ class _FreeModes:
         count = (_within(free, modes, watch) if isinstance(modes, Accuracy) else
                  check_count(modes, free, "body has {} elastic modes"))
         self.squares, self.elastic = free.vibrations(count)
+        self.left_out = free.left_out(count)
 
     def accuracy(self) -> str:
         """What the modes are good for, in words."""

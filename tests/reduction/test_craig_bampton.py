@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
+from scipy.spatial.transform import Rotation
 
 from sebody.errors import InputError
 from sebody.fem import FEModel, Section, frame, hexahedral_block, planar_beam, straight_beam
-from sebody.reduction import component_modes, craig_bampton
+from sebody.reduction import clamped, component_modes, craig_bampton, reduce
 
 LENGTH = 2.0
 # So slender that rotary inertia and axial motion do not show: E I = rho A = 1.
@@ -119,6 +120,37 @@ def test_signs_and_repeated_calls_agree_and_large_models_match_small():
     assert_allclose(fine.mass[:12, 12:], coarse.mass[:12, 12:], atol=1e-4 * np.max(fine.mass))
     again = craig_bampton(large, [(0, "full"), (200, "full")], 4)
     assert_array_equal(again.mass, fine.mass)
+
+
+def star(disturbed=0.0):
+    """Six equal arms in space: their modes come in twelves with the centre clamped."""
+    points = np.vstack([np.zeros(3), np.eye(3), -np.eye(3)])
+    points = points @ Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix().T
+    points += disturbed * np.random.default_rng(0).normal(size=points.shape)
+    section = Section(1e-2, 1e-6, 1e-6, 2e-6, 2.1e6, 0.3, 7.8e-3)
+    return frame(points, [(0, k) for k in range(1, 7)], section, 4)
+
+
+def test_a_cut_between_equal_frequencies_is_no_choice_of_the_solver(monkeypatch):
+    dense = craig_bampton(star(), [(0, "full")], 5)
+    monkeypatch.setattr(clamped, "_DENSE_LIMIT", 0)
+    sparse = craig_bampton(star(), [(0, "full")], 5)
+    # the largest components of a turned star's modes are equal to 1e-15 or differ by more than 1e-6
+    assert_allclose(sparse.mass, dense.mass, atol=1e-8 * np.abs(dense.mass).max())
+
+
+def test_a_cut_between_equal_frequencies_is_told():
+    def told(body):
+        return [note for note in body.notes if "frequency" in note]
+    assert told(craig_bampton(star(), [(0, "full")], 5)) == [
+        "the last of 5 modes has the frequency of the 7 next ones, which are left out: the body is "
+        "less symmetric than its FE model, with 12 modes it is not"]
+    assert "the next one, which is left out" in told(craig_bampton(star(), [(0, "full")], 11))[0]
+    assert told(reduce(star(), [(1, "full")], 3, "rubin"))[0].startswith("the last of 3 modes")
+    for body in (craig_bampton(star(), [(0, "full")], 12), craig_bampton(star(), [(0, "full")], 0),
+                 craig_bampton(star(), [(0, "full")], 5, select=[0, 4]),
+                 craig_bampton(star(disturbed=1e-3), [(0, "full")], 6)):
+        assert not told(body)
 
 
 @pytest.mark.parametrize("modes", [0, 5])
