@@ -9,12 +9,16 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction.body import ReducedBody
 
-# Directions in which the nodes spread less than this, relative to the widest, are rounding.
-_FLAT = 1e-8
+# In directions in which the nodes spread less than this, relative to the widest, weights take the
+# mean ever less of the way to the centre: of nodes that are in a plane but for the digits of a
+# file, weights that reach a centre outside this plane are millions of both signs.
+_THIN = 0.1
 
 
 def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
-    """Smallest weights that add up to one and bring the weighted mean nearest to the centre.
+    """Smallest weights that add up to one and bring the weighted mean to the centre of mass.
+
+    The mean stays short of it in directions in which the nodes hardly spread, or not at all.
 
     Section 3.1 of the paper with its claims (i) to (iii) kept: the sum is an exact constraint and
     coordinates are relative to the nodes' mean, where (21)-(22) mix lengths squared with a pure
@@ -50,7 +54,9 @@ def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
     middle = coordinates.mean(axis=0)
     # The rows of the centred coordinates add up to zero, so the minimum-norm solution does too:
     # added to 1/n it meets the constraint and keeps the norm minimal.
-    shift = np.linalg.pinv((coordinates - middle).T, rcond=_FLAT) @ (centre - middle)
+    directions, spread, weights = np.linalg.svd((coordinates - middle).T, full_matrices=False)
+    enough = np.maximum(spread, _THIN * spread.max() or 1.0)
+    shift = weights.T @ (spread / enough**2 * (directions.T @ (centre - middle)))
     return 1.0 / len(coordinates) + shift - shift.mean()
 
 

@@ -86,6 +86,28 @@ def test_collinear_nodes_in_a_general_direction():
                     rtol=0, atol=1e-13)
 
 
+def test_nodes_nearly_in_a_plane_or_on_a_line_have_weights_of_this_plane_or_line():
+    """Weights that reached a centre off the plane were millions of both signs."""
+    random = np.random.default_rng(4)
+    square = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0.0]]) / 2
+    line = np.array([[0, 0], [0.5, 0], [1, 0.0]])
+    for nodes, centre in ((square, [0.1, 0.05, 0.3]), (line, [0.4, 0.2])):
+        flat, off = frame_weights(nodes, centre), random.normal(size=nodes.shape)
+        for size in (1e-12, 1e-9, 1e-6, 1e-4):
+            # thickness over (a tenth of the width) squared, times the way to the centre
+            change = np.abs(frame_weights(nodes + size * off, centre) - flat).max()
+            assert change < 100 * size * np.linalg.norm(off)
+
+
+def test_thick_clouds_of_nodes_reach_the_centre_and_thin_ones_go_on_from_there():
+    square = np.array([[1, 1, 1], [-1, 1, -1], [-1, -1, 1], [1, -1, -1.0]])
+    centre = np.array([0.1, 0.05, 0.3])
+    for thickness, reached in ((0.2, 1.0), (0.1 + 1e-9, 1.0), (0.1 - 1e-9, 1.0), (0.01, 0.01)):
+        nodes = square * [1, 1, thickness]
+        mean = frame_weights(nodes, centre) @ nodes
+        assert_allclose(mean, centre * [1, 1, reached], rtol=0, atol=1e-7)
+
+
 def test_body_weights_of_beam_frame_and_solid():
     beam = straight_beam([0, 0, 0], [100, 100, 0], SECTION, 10)
     for weights in body_weights(craig_bampton(beam, {0: "full", 10: "full"}, 2)):
