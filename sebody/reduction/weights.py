@@ -13,12 +13,16 @@ from sebody.reduction.body import ReducedBody
 # mean ever less of the way to the centre: of nodes that are in a plane but for the digits of a
 # file, weights that reach a centre outside this plane are millions of both signs.
 _THIN = 0.1
+# Largest norm of what weights differ by from equal ones, which no centre within the nodes' hull
+# needs. Weights for a centre far outside multiply differences of rotations between close nodes.
+_LARGEST = 1.0
 
 
 def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
     """Smallest weights that add up to one and bring the weighted mean to the centre of mass.
 
-    The mean stays short of it in directions in which the nodes hardly spread, or not at all.
+    The mean stays short of it in directions in which the nodes hardly spread, or not at all, and of
+    a centre that is far outside the hull of the nodes.
 
     Section 3.1 of the paper with its claims (i) to (iii) kept: the sum is an exact constraint and
     coordinates are relative to the nodes' mean, where (21)-(22) mix lengths squared with a pure
@@ -57,6 +61,7 @@ def frame_weights(coordinates: ArrayLike, centre_of_mass: ArrayLike) -> NDArray:
     directions, spread, weights = np.linalg.svd((coordinates - middle).T, full_matrices=False)
     enough = np.maximum(spread, _THIN * spread.max() or 1.0)
     shift = weights.T @ (spread / enough**2 * (directions.T @ (centre - middle)))
+    shift /= max(1.0, np.linalg.norm(shift) / _LARGEST)
     return 1.0 / len(coordinates) + shift - shift.mean()
 
 

@@ -101,11 +101,30 @@ def test_nodes_nearly_in_a_plane_or_on_a_line_have_weights_of_this_plane_or_line
 
 def test_thick_clouds_of_nodes_reach_the_centre_and_thin_ones_go_on_from_there():
     square = np.array([[1, 1, 1], [-1, 1, -1], [-1, -1, 1], [1, -1, -1.0]])
-    centre = np.array([0.1, 0.05, 0.3])
+    centre = np.array([0.1, 0.05, 0.03])
     for thickness, reached in ((0.2, 1.0), (0.1 + 1e-9, 1.0), (0.1 - 1e-9, 1.0), (0.01, 0.01)):
         nodes = square * [1, 1, thickness]
         mean = frame_weights(nodes, centre) @ nodes
         assert_allclose(mean, centre * [1, 1, reached], rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5, 9])
+def test_centres_within_the_hull_are_reached_and_others_as_far_as_moderate_weights_do(count):
+    random = np.random.default_rng(count)
+    nodes = random.standard_normal((count, 3))
+    middle = nodes.mean(axis=0)
+    for corner in range(count):                     # of the hull, where weights are largest
+        inside = random.dirichlet(0.1 * np.ones(count)) @ nodes
+        for centre in (nodes[corner], inside):
+            mean = frame_weights(nodes, centre) @ nodes
+            directions = np.linalg.svd(nodes - middle)[2][:count - 1]
+            assert_allclose(directions @ mean, directions @ centre, rtol=0, atol=1e-12)
+    far = middle + 50.0 * (nodes[0] - middle)
+    weights = frame_weights(nodes, far)
+    assert np.linalg.norm(weights - 1 / count) <= 1.0 + TIGHT
+    towards = weights @ nodes - middle              # straight towards the centre
+    assert_allclose(towards / np.linalg.norm(towards),
+                    (far - middle) / np.linalg.norm(far - middle), rtol=0, atol=1e-12)
 
 
 def test_body_weights_of_beam_frame_and_solid():
