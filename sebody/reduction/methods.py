@@ -116,7 +116,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
                     "dynamic stiffness of the interface")
             notes.append(f"{what} within {error:.2g} up to the frequency {wanted.up_to:g}")
         component = static.with_vibrations(interior, modes, select)
-        left_out = interior.left_out(modes) if select is None else 0
+        left_out = interior.left_out(len(component.omega_squared)) if select is None else 0
     else:
         free = _FreeModes(edge, *matrices, modes, watch)
         component, left_out = free.component(static, interior), free.left_out

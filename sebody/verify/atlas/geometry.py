@@ -183,22 +183,24 @@ def negative_weights() -> Finding:
     finding = Finding(
         "negative weights of the frame",
         "the energy drift is of second order in the step",
-        "Nodes at 1/4 and 1/2 of a beam have the weights 0 and 1, nodes at 0 and 1/4 the weights "
-        "-1 and 2: the frame is extrapolated, and one node rotates twice as far relative to the "
-        "frame as relative to the other node. Energy is conserved to second order, as with any "
+        "Nodes at 1/4 and 1/2 of a beam have the weights 0 and 1; nodes at 0 and 1/4 would need -1 "
+        "and 2. The farther the centre, the more would one node rotate relative to the frame for "
+        "a rotation relative to the other node. Energy is conserved to second order, as with any "
         "weights.",
-        "sebody accepts negative weights; the limit of 180 degrees is reached at half the "
-        "relative rotation.",
+        "sebody keeps weights within 1, as the root of the sum of squares, of equal ones, which "
+        "every centre between the nodes allows: here -0.21 and 1.21. The limit of 180 degrees is "
+        "reached at the relative rotation divided by the larger weight.",
         "step [s]", "relative drift of energy", logarithmic="xy")
     model = Model()
     _beam(model, 10.0, 0, 1)
     weights = model.bodies["beam"].alpha
-    finding.rows += [Row("weight of the first node", -1.0, weights[0], 1e-9),
-                     Row("weight of the second node", 2.0, weights[1], 1e-9)]
-    angles = np.arange(70.0, 100.0, 1.0)
+    larger = 0.5 + np.sqrt(0.5)
+    finding.rows += [Row("weight of the first node", 1.0 - larger, weights[0], 1e-9),
+                     Row("weight of the second node", larger, weights[1], 1e-9)]
+    angles = np.arange(110.0, 160.0, 1.0)
     refused = [_refused(model, angle) for angle in angles]
-    finding.rows.append(Row("first refused relative rotation [deg]", LIMIT / 2,
-                            angles[int(np.argmax(refused))], 1.0 / (LIMIT / 2)))
+    finding.rows.append(Row("first refused relative rotation [deg]", LIMIT / larger,
+                            angles[int(np.argmax(refused))], 1.0 / (LIMIT / larger)))
     steps = (0.02, 0.01, 0.005, 0.0025)
     drifts = [_tumbling(h) for h in steps]
     finding.curves["measured"] = steps, drifts
