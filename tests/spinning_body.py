@@ -98,7 +98,10 @@ def strip(thickness, elements=20):
 
 
 def turned_resultants(body):
-    """Resultants of a body that turns as a whole, over the largest part that must cancel."""
+    """Resultants of interfaces of a body that turns as a whole, over the largest part to cancel.
+
+    Those of internal modes vanish if the modes take the part of the second order that is theirs.
+    """
     i = body.invariants
     count = len(body.position_nodes)
     psi = np.array([0.3, -0.8, 0.5])
@@ -107,5 +110,6 @@ def turned_resultants(body):
     second = np.concatenate([(np.cross(psi, first) / 2).ravel(),
                              np.zeros(len(body.mass) - 3 * count)])
     y = body.rigid_modes_about(i.origin)[:, 3:] @ psi
-    parts = i.lam * (i.E.T @ second), i.Ghat @ y @ y / 2
+    own = i.E[:len(y) - body.modes].any(axis=0)
+    parts = (i.lam * (i.E.T @ second))[own], (i.Ghat @ y @ y / 2)[own]
     return np.abs(sum(parts)) / np.abs(parts).max()

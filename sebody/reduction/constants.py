@@ -78,9 +78,11 @@ def _stiffening_notes(fe_model: FEModel, extra: Stiffening | None) -> list[str]:
         return []
     if not len(extra.Q) + len(extra.lam):
         return ["stiffening by stresses: negligible"]
-    rest = "; the others change little" if len(extra.lam) < extra.motions else ""
-    return [f"stiffening by stresses: {len(extra.Q)} load modes, {len(extra.lam)} of "
-            f"{extra.motions} resultants of second order{rest}"]
+    own = len(extra.lam) - extra.internal
+    rest = "; the others change little" if own < extra.motions else ""
+    internal = f", {extra.internal} of internal modes that stretch" if extra.internal else ""
+    return [f"stiffening by stresses: {len(extra.Q)} load modes, {own} of {extra.motions} "
+            f"resultants of second order{internal}{rest}"]
 
 
 def _invariants(body: ReducedBody, fe_model: FEModel, boundary: Boundary,
@@ -148,7 +150,7 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
         body.mass, scale, rigid / [*[1.0] * dimension, *[size] * (rigid.shape[1] - dimension)],
         largest
     ).stiffening(np.vstack([loads, np.zeros(on_means.shape)]), np.vstack([answers, on_means]),
-                 answers.T @ (ties.project(fe_model.mass) @ answers))
+                 lambda moved: moved[:n].T @ (ties.project(fe_model.mass) @ moved[:n]))
     return replace(stress_stiffness, load_modes=ties.spread(stress_stiffness.load_modes[:n]))
 
 

@@ -13,8 +13,18 @@ Phi`` that on the reduced coordinates y.
   delta_ef``.
 
 Both are prestresses: displacements orthonormal in strain energy, turned so that as few as possible
-have a geometric stiffness. Stress-carrying internal modes are uncorrected in the strain energy, so
-load modes are not made orthogonal to them: their part would be missing.
+have a geometric stiffness. Internal modes are turned, too, and what they are by their stresses
+(`internal_stresses.py`) decides what becomes of them:
+
+* Those that stretch as the body vibrates slowly have resultants like boundary motions. Load modes
+  are orthogonal to them, since their part of a displacement of second order is a deformation of its
+  own, with inertia.
+* Those without stresses that matter have none, and load modes are orthogonal to them all the same:
+  a load mode that had a part of them would move the body as they do, and stresses of the rest of it
+  would be what bends the body.
+* The others carry stresses that only loads cause, such as axial modes of straight beams. They are
+  uncorrected in the strain energy, so load modes are not made orthogonal to them: their part would
+  be missing.
 """
 
 from collections.abc import Callable
@@ -25,6 +35,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigh
 
 from sebody.reduction.clamped import canonical_turn
+from sebody.reduction.internal_stresses import divide
 
 # Load cases with less strain energy than this part of the largest are rounding.
 _NULL = 1e-8
@@ -53,6 +64,8 @@ class Stiffening:
         Shapes of unit modal mass, zero on the boundary.
     motions : int
         Number of elastic boundary motions, each of which could have a resultant.
+    internal : int
+        Number of resultants of internal modes; they come last.
     """
 
     load_modes: NDArray
@@ -61,6 +74,7 @@ class Stiffening:
     E: NDArray
     Ghat: NDArray
     motions: int = 0
+    internal: int = 0
 
 
 class GeometricStiffness:
@@ -92,44 +106,69 @@ class GeometricStiffness:
         boundary = slice(0, self._held)
         count = np.linalg.matrix_rank(rigid[boundary] * scale[:, None])
         values, vectors = np.linalg.eigh(stiffness[boundary, boundary] / np.outer(scale, scale))
-        self._boundary = vectors[:, count:] / scale[:, None] / np.sqrt(values[count:])
+        motions = vectors[:, count:] / scale[:, None] / np.sqrt(values[count:])
         modes = 1 / np.sqrt(np.diag(stiffness)[self._held:])
-        self._elastic = block_diag(self._boundary, np.diag(modes))   # orthonormal in strain energy
+        self._elastic = block_diag(motions, np.diag(modes))     # orthonormal in strain energy
+        self._count = motions.shape[1]                          # of them, on the boundary
+        self._lowest = max(self._count, _LOWEST)                # vibrations that count
         momenta = mass @ rigid
         relative = mass - momenta @ np.linalg.pinv(rigid.T @ momenta) @ momenta.T
         self._flexible = self._elastic.T @ relative @ self._elastic     # of the free body's mass
 
-    def stiffening(self, loads: NDArray, answers: NDArray, masses: NDArray) -> Stiffening:
+    def stiffening(self, loads: NDArray, answers: NDArray,
+                   mass: Callable[[NDArray], NDArray]) -> Stiffening:
         """Load modes and resultants.
 
         Parameters
         ----------
         loads, answers : (n_dofs, k)
             Load cases and their displacements, boundary clamped.
-        masses : (k, k)
-            FE mass, projected on the displacements.
+        mass : function
+            FE mass, (k, k), projected on displacements (n_dofs, k).
         """
+        shapes = self._basis @ self._elastic
+        motions, modes = shapes[:, :self._count], shapes[:, self._count:]
+        of_motions = self._each(motions)
+        stretching, clear = self._divided(of_motions, shapes)
+        own = modes @ clear
+        load_modes, Q = self._load_modes(loads, answers - own @ (own.T @ loads), mass)
+
+        turn, G = self._prestresses(of_motions, motions, motions)
+        count, turn = len(G), block_diag(turn, stretching)
+        size = self._largest(shapes @ turn)     # motions d_e of largest rotation 1
+        Ghat = np.concatenate([G, self._each(modes @ stretching)]) / size[:, None, None]
+        chosen = np.append(self._that_matter(Ghat[:count]), np.ones(len(Ghat) - count, dtype=bool))
+        E = (self._stiffness @ self._elastic @ turn * size)[:, chosen]
+        return Stiffening(load_modes, Q, 1 / size[chosen]**2, E, Ghat[chosen], self._count,
+                          stretching.shape[1])
+
+    def _each(self, shapes: NDArray) -> NDArray:
+        """G (k, n, n) of displacements (n_dofs, k)."""
+        return np.array([self._of(shape) for shape in shapes.T]).reshape(
+            -1, *self._stiffness.shape)
+
+    def _load_modes(self, loads: NDArray, answers: NDArray, mass: Callable[[NDArray], NDArray]
+                    ) -> tuple[NDArray, NDArray]:
+        """Shapes of unit modal mass, and their Q."""
         values, vectors = np.linalg.eigh(loads.T @ answers)
         independent = values > _NULL * values.max(initial=0.0)
         orthonormal = vectors[:, independent] / np.sqrt(values[independent])
         moved = self._elastic @ (self._elastic.T @ (self._basis.T @ loads))
-        turn, G = self._prestresses(answers @ orthonormal,
+        shapes = answers @ orthonormal
+        turn, G = self._prestresses(self._each(shapes), shapes,
                                     (answers + self._basis @ moved) @ orthonormal)
-        weights = orthonormal @ turn
-        modal = np.einsum("ia,ij,ja->a", weights, masses, weights)
-        # of unit modal mass; the strain energy kap is then 1 / modal
-        Q = -G * np.sqrt(modal)[:, None, None]
+        shapes = shapes @ turn
+        modal = np.diag(mass(shapes))           # the strain energy kap is then 1 / modal
+        return shapes / np.sqrt(modal), -G * np.sqrt(modal)[:, None, None]
 
-        boundary = slice(0, self._held)
-        shapes = self._basis[:, boundary] @ self._boundary
-        turn, G = self._prestresses(shapes, shapes)
-        size = self._largest(shapes @ turn)     # motions d_e of largest rotation 1
-        independent = self._that_matter(G / size[:, None, None])
-        turn, G, size = turn[:, independent], G[independent], size[independent]
-        E = np.zeros((len(self._stiffness), len(size)))
-        E[boundary] = self._stiffness[boundary, boundary] @ self._boundary @ turn * size
-        return Stiffening(answers @ (weights / np.sqrt(modal)), Q, 1 / size**2, E,
-                          G / size[:, None, None], shapes.shape[1])
+    def _divided(self, of_motions: NDArray, shapes: NDArray) -> tuple[NDArray, NDArray]:
+        """Turns of the internal modes: those that stretch, and what load modes leave out."""
+        vibrations = np.linalg.eigh(self._flexible)[1][:, -self._lowest:]
+        amplitudes = vibrations * (_LARGEST_MOTION / self._largest(shapes @ vibrations))
+        low, modes = self._elastic @ vibrations, shapes[:, self._count:]
+        of_modes = [low.T @ self._of(shape) @ low for shape in modes.T]
+        return divide(np.array([*(low.T @ of_motions @ low), *of_modes]),
+                      amplitudes[self._count:], modes)
 
     def _that_matter(self, Ghat: NDArray) -> NDArray:
         """Which resultants to keep, of geometric stiffnesses of motions of largest rotation 1."""
@@ -138,7 +177,8 @@ class GeometricStiffness:
         relative = self._elastic.T @ Ghat @ self._elastic
         return _LARGEST_MOTION * np.linalg.norm(relative, 2, axis=(1, 2)) > _SLIGHT
 
-    def _prestresses(self, shapes: NDArray, motions: NDArray) -> tuple[NDArray, NDArray]:
+    def _prestresses(self, G: NDArray, shapes: NDArray, motions: NDArray
+                     ) -> tuple[NDArray, NDArray]:
         """Turn (k, m) of orthonormal shapes (n_dofs, k) to the m that matter, and their G.
 
         With each shape the body has the displacement (n_dofs,) of the same column of `motions`.
@@ -146,7 +186,6 @@ class GeometricStiffness:
         size = len(self._stiffness)
         if shapes.shape[1] == 0 or self._elastic.shape[1] == 0:     # nothing could become stiffer
             return np.zeros((shapes.shape[1], 0)), np.zeros((0, size, size))
-        G = np.array([self._of(shape) for shape in shapes.T])
         relative = self._elastic.T @ G @ self._elastic
         turn, singular, _ = np.linalg.svd(relative.reshape(len(G), -1), full_matrices=False)
         turn = turn[:, singular > _ROUNDING * singular.max(initial=0.0)]
@@ -170,7 +209,7 @@ class GeometricStiffness:
         matrix = shapes.T @ relative @ shapes
         equal = np.abs(inverse[:, None] - inverse) <= _REPEATED * np.maximum.outer(inverse, inverse)
         first = np.abs(np.linalg.eigvalsh(np.where(equal, matrix, 0.0))).max()
-        lowest, most = slice(-max(self._boundary.shape[1], _LOWEST), None), 0.0
+        lowest, most = slice(-self._lowest, None), 0.0
         for changed in (np.eye(len(matrix)) + matrix, np.eye(len(matrix)) - matrix):
             if np.linalg.eigvalsh(changed)[0] <= _WEAK:     # it buckles, or nearly
                 return first, np.inf

@@ -12,6 +12,8 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.recovery import Recovery
 
+_NO_SHARE = 1e-6    # of a resultant in the modes that stay: what stays without it is rounding
+
 
 def truncated(body: ReducedBody, modes: int) -> ReducedBody:
     """The same body with the first of its internal modes alone.
@@ -50,7 +52,7 @@ def truncated(body: ReducedBody, modes: int) -> ReducedBody:
     return replace(
         body, stiffness=body.stiffness[first, first], mass=body.mass[first, first], modes=modes,
         damping=None if body.damping is None else body.damping[first, first],
-        invariants=body.invariants and _truncated_invariants(body.invariants, size),
+        invariants=body.invariants and _truncated_invariants(body, size),
         recovery=body.recovery and _truncated_recovery(body, size),
         notes=(*body.notes, f"{modes} of {body.modes} internal modes kept"),
         loads={name: load[first] for name, load in body.loads.items()})
@@ -61,12 +63,23 @@ def _kept(size: int, before: int, count: int) -> NDArray:
     return np.r_[:size, before:count]
 
 
-def _truncated_invariants(i: InertiaInvariants, size: int) -> InertiaInvariants:
-    kept, first = _kept(size, i.Q.shape[1], len(i.Mbar)), slice(0, size)
+def _truncated_invariants(body: ReducedBody, size: int) -> InertiaInvariants:
+    """The constants; what a resultant has of omitted modes gives way to its stress at once.
+
+    Of a resultant ``c + q`` of unit strain energy, ``q = y^T G y / 2``, that is the least energy of
+    given coordinates that stay: ``c^2 / (2 r) + c q + r q^2 / 2``, where r is their part of it.
+    """
+    i, n = body.invariants, len(body.mass)
+    kept, first, left = _kept(size, n, len(i.Mbar)), slice(0, size), slice(size, n)
+    forces = (i.lam * i.E)[left]
+    share = 1.0 - (forces**2 / np.diag(body.stiffness)[left, None]).sum(axis=0) / i.lam
+    stay = share > _NO_SHARE
+    share = share[stay]
     return replace(
         i, S1=i.S1[:, kept], g=i.g[:, kept], h=i.h[..., kept], K=i.K[:, kept][:, :, kept],
         J2=i.J2[:, :, kept][..., kept], Mbar=i.Mbar[np.ix_(kept, kept)], Q=i.Q[:, first, first],
-        E=i.E[first], Ghat=i.Ghat[:, first, first])
+        lam=share * i.lam[stay], E=i.E[first, stay] / share,
+        Ghat=share[:, None, None] * i.Ghat[stay, first, first])
 
 
 def _truncated_recovery(body: ReducedBody, size: int) -> Recovery:
