@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from sebody.reduction.clamped import canonical_turn
 
 # Modes stretch if their part in a low vibration, which moves the body by a tenth of its size or
-# turns it by 0.1 rad, changes the stiffness of low vibrations by more than this multiple.
-_STRETCHING = 2.0
-_CLEAR = 0.01   # of the largest geometric stiffness of one strain energy: less is none
+# turns it by 0.1 rad, changes the stiffness of low vibrations by more than this part of it.
+_STRETCHING = 0.75
+_CLEAR = 0.003  # of the largest geometric stiffness of one strain energy: less is none
 
 
 def divide(G: NDArray, amplitudes: NDArray, shapes: NDArray) -> tuple[NDArray, NDArray]:

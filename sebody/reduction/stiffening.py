@@ -48,6 +48,7 @@ _LOWEST = 6     # frequencies that count, or as many as elastic boundary motions
 # beams, whose bending and twist change one another alone, those that change less than _WEAK are
 # left out: all of them if the section is compact. In frames, plates and solids they act together.
 _WEAK, _FIRST_ORDER, _LARGEST_MOTION = 0.02, 1e-3, 0.1
+_SOFT = 10.0    # times the strain energy of the softest vibration: harder ones move the body less
 # Of more resultants than _MANY only those are kept that change the strain energy of some motion by
 # more than _SLIGHT of it, moving the body as far. The others are of bending and twist: what they
 # change is of the order of the rotation they make, tensions change a multiple of that.
@@ -164,7 +165,8 @@ class GeometricStiffness:
     def _divided(self, of_motions: NDArray, shapes: NDArray) -> tuple[NDArray, NDArray]:
         """Turns of the internal modes: those that stretch, and what load modes leave out."""
         vibrations = np.linalg.eigh(self._flexible)[1][:, -self._lowest:]
-        amplitudes = vibrations * (_LARGEST_MOTION / self._largest(shapes @ vibrations))
+        reached = _LARGEST_MOTION / self._largest(shapes @ vibrations)
+        amplitudes = vibrations * np.minimum(reached, np.sqrt(_SOFT) * reached.min(initial=np.inf))
         low, modes = self._elastic @ vibrations, shapes[:, self._count:]
         of_modes = [low.T @ self._of(shape) @ low for shape in modes.T]
         return divide(np.array([*(low.T @ of_motions @ low), *of_modes]),

@@ -6,7 +6,7 @@ from bowed import beams, bowed, divided, path
 
 
 @pytest.mark.parametrize(("parts", "h"), [(1, 2e-4), (4, 5e-4)])
-@pytest.mark.parametrize("rise", [0.0, 0.001, 0.003, 0.01, 0.03])
+@pytest.mark.parametrize("rise", [0.0, 1e-4, 0.001, 0.003, 0.01, 0.03])
 def test_a_bowed_beam_follows_nonlinear_beams(rise, parts, h):
     """Of twelve modes together 3e-5 to 4e-5 are left.
 
@@ -19,11 +19,3 @@ def test_a_bowed_beam_follows_nonlinear_beams(rise, parts, h):
     found, rejected = path(divided(points, parts, 12), points, h)
     assert np.abs(found - expected).max() < 6e-5
     assert parts == 1 or rejected == 0      # tensions of the whole want shorter steps
-
-
-def test_the_error_grows_with_a_bow_that_counts_as_none():
-    """Of a tenth of a radius of gyration, the largest without a resultant: twice as much."""
-    points = bowed(3e-4)
-    expected, _ = path(beams(points), points, 5e-4)
-    found, _ = path(divided(points, 1, 12), points, 5e-4)
-    assert np.abs(found - expected).max() < 1.5e-4
