@@ -116,12 +116,18 @@ def _constants(body: ReducedBody, squares: NDArray, modes: NDArray
                ) -> dict[str, tuple[NDArray, NDArray | None]]:
     """M0 (r, c) and M1 (r, nq, c) by name."""
     one, n, nq = body.invariants.about(np.zeros(3)), len(body.mass), modes.shape[1]
+    inner = slice(n - body.modes, n)
     S1, g, h = (part[..., :n] @ modes for part in (one.S1, one.g, one.h))
     K = modes.T @ one.K[:, :n, :n] @ modes
     J2 = modes.T @ one.J2[:, :, :n, :n] @ modes
     Q = modes.T @ one.Q @ modes
-    by_first, by_turn, by_spin = (np.einsum("...b,bij->...ij", part[..., n:], Q)
-                                  for part in (one.S1, one.g, one.h))
+    # of load modes, and of internal modes that stretch: their answer to the load is a prestress
+    stretch = one.E[inner] / np.diag(body.stiffness)[inner, None]
+    G = modes.T @ one.Ghat @ modes
+    by_first, by_turn, by_spin = (
+        np.einsum("...b,bij->...ij", part[..., n:], Q)
+        - np.einsum("...e,eij->...ij", part[..., inner] @ stretch, G)
+        for part in (one.S1, one.g, one.h))
     both = h + h.transpose(1, 0, 2)
     spins = [-(h[k, k] if k == m else both[k, m]) for k, m in _SPINS]
     more = [-(J2[k, m] + by_spin[k, m]) if k == m else

@@ -64,22 +64,39 @@ def _kept(size: int, before: int, count: int) -> NDArray:
 
 
 def _truncated_invariants(body: ReducedBody, size: int) -> InertiaInvariants:
-    """The constants; what a resultant has of omitted modes gives way to its stress at once.
-
-    Of a resultant ``c + q`` of unit strain energy, ``q = y^T G y / 2``, that is the least energy of
-    given coordinates that stay: ``c^2 / (2 r) + c q + r q^2 / 2``, where r is their part of it.
-    """
     i, n = body.invariants, len(body.mass)
-    kept, first, left = _kept(size, n, len(i.Mbar)), slice(0, size), slice(size, n)
-    forces = (i.lam * i.E)[left]
-    share = 1.0 - (forces**2 / np.diag(body.stiffness)[left, None]).sum(axis=0) / i.lam
-    stay = share > _NO_SHARE
-    share = share[stay]
+    kept, first = _kept(size, n, len(i.Mbar)), slice(0, size)
+    lam, E, Ghat = _truncated_resultants(i, body.stiffness, size)
     return replace(
         i, S1=i.S1[:, kept], g=i.g[:, kept], h=i.h[..., kept], K=i.K[:, kept][:, :, kept],
         J2=i.J2[:, :, kept][..., kept], Mbar=i.Mbar[np.ix_(kept, kept)], Q=i.Q[:, first, first],
-        lam=share * i.lam[stay], E=i.E[first, stay] / share,
-        Ghat=share[:, None, None] * i.Ghat[stay, first, first])
+        lam=lam, E=E, Ghat=Ghat)
+
+
+def _truncated_resultants(i: InertiaInvariants, stiffness: NDArray, size: int
+                          ) -> tuple[NDArray, NDArray, NDArray]:
+    """Resultants, where what they have of omitted modes gives way at once: lam, E, Ghat.
+
+    Of resultants ``c_e + q_e`` of unit strain energy, ``q_e = y^T G_e y / 2``, the least energy of
+    given coordinates that stay is ``sum_e c_e q_e + q . R q / 2`` beyond the linear one, with the
+    products R of their parts in these. The eigenvectors of R make it a sum of squares again.
+    """
+    first, cut = slice(0, size), i.E[size:].any(axis=0)
+    if not cut.any():
+        return i.lam, i.E[first], i.Ghat[:, first, first]
+    roots, diagonal = np.sqrt(i.lam[cut]), np.diag(stiffness)[first]
+    scale = np.where(diagonal > 0, 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
+    forces = scale[:, None] * i.E[first, cut] * roots
+    inverse = np.linalg.pinv(scale[:, None] * stiffness[first, first] * scale, rcond=1e-12,
+                             hermitian=True)
+    shares, turn = np.linalg.eigh(forces.T @ inverse @ forces)
+    shares, turn = shares[shares > _NO_SHARE], turn[:, shares > _NO_SHARE]
+    lam = (turn**2).T @ i.lam[cut]
+    E = i.E[first, cut] @ (roots[:, None] * turn / np.sqrt(shares * lam))
+    Ghat = np.einsum("ef,eij->fij", turn / roots[:, None] * np.sqrt(shares * lam),
+                     i.Ghat[cut, first, first])
+    return (np.concatenate([i.lam[~cut], lam]), np.hstack([i.E[first, ~cut], E]),
+            np.concatenate([i.Ghat[~cut, first, first], Ghat]))
 
 
 def _truncated_recovery(body: ReducedBody, size: int) -> Recovery:

@@ -63,7 +63,6 @@ def test_fewer_modes_have_the_energy_of_a_reduction_with_fewer():
     points = bowed(0.03)
     many, few = whole(points, 20), whole(points, 3)
     cut = truncated(many, 3)
-    assert (cut.invariants.lam / many.invariants.lam).min() < 0.02
     y = np.random.default_rng(3).normal(size=(6, 15)) * np.repeat([0.0, 0.02, 0.001], [6, 6, 3])
 
     def second_order(body):
