@@ -46,8 +46,8 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
             _kinds(model, joint) for joint in model.joints if joint.name == name)):
         if reading := [load.name for load in model.loads if load.pressed_by is not None
                        and load.pressed_by.name == name]:
-            raise InputError(f"joint {name!r} keeps its equations, whose forces press {reading[0]!r}"
-                             ": define that with reaction=False and a preload")
+            raise InputError(f"joint {name!r} keeps its equations, whose forces press "
+                             f"{reading[0]!r}: define that with reaction=False and a preload")
         what = "the model has no joint with" if name is None else f"joint {name!r} has no"
         others = f"; of this model {', '.join(possible)} has some" if possible else ""
         raise InputError(f"{what} equations that shared positions or rotations can replace{others}")
