@@ -9,7 +9,8 @@ springs to where the step began,
 with the masses and the largest moments of inertia W: the proximal-point iteration for the least
 potential (R. T. Rockafellar, SIAM J. Control and Optimization 14, 1976, p. 877). The rate falls
 until the springs are soft beside the loads; then the steps are repeated until nothing is left of
-them, by a factor of about `LAST` in each.
+them, by a factor of about `LAST` in each. Where they shrink slowly, as of a rod between ball joints
+that only its own sag keeps from rolling, the springs are still too stiff and their rate falls on.
 """
 
 from typing import NamedTuple
@@ -26,11 +27,14 @@ from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import rotating
 
-ITERATIONS = 25
+ITERATIONS = 50
+LEAST = 1.0 / 64.0          # part of a correction: those that do not shrink are halved, since what
+                            # friction holds may slide to and fro between two of them
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
 STEPS = 300                 # of a motion to rest
 FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
+SLOW, SOFTEST = 0.1, 1e-9   # steps that shrink by less need softer springs, down to this rate
 SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
 AGAIN = 4.0                 # factor by which it rises after one that was not
 ROUGH = 0.2                # tolerance of a step, by its length: the next one corrects it
@@ -57,6 +61,7 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
     state, n = run.state, run.numbering.free
     state.frames_old[:] = state.frames
     far = FAR if np.any(run.system.magnitude[:n] > 0.0) else 1.0    # else of what it leads to
+    last, part = np.inf, 1.0
     for _ in range(ITERATIONS):
         try:
             tangent, residual = _linear(run, spin, springs)
@@ -69,6 +74,9 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
         change = size(run, correction[:n])
         if not np.isfinite(change) or change > far:     # perhaps to an unstable place
             return False
+        part = max(part / 2.0, LEAST) if change > part * last else min(2.0 * part, 1.0)
+        correction *= part
+        last = change
         to_body_axes(run.system, state.frames, correction, True)
         state.R_old[:], state.dq[:] = state.R, -correction
         state.q[:] -= correction
@@ -88,27 +96,29 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     near : bool
         Whether it rests nearly where it is.
     """
-    pace, start = _pace(run, spin), run.state.now.copy()
-    if not 0.0 < pace < np.inf:
+    unit, start = pace(run, spin), run.state.now.copy()
+    if not 0.0 < unit < np.inf:
         return False
-    rate, faster = (LAST if near else FIRST) * pace, FASTEST
+    rate, faster, lowest = (LAST if near else FIRST) * unit, FASTEST, LAST * unit
     last = np.inf
     for _ in range(STEPS):
-        kept, ending = run.state.now.copy(), rate <= LAST * pace
+        kept, ending = run.state.now.copy(), rate <= lowest
         state = balance(run, tolerance, spin, _springs(run, rate))
         moved = size(run, _moved(run, kept))
         if not state or moved > FAR:
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
-            if rate > pace / LAST:
+            if rate > unit / LAST:
                 return False
             continue
         if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance):
             return True
+        if ending and moved > SLOW * last:
+            lowest = max(lowest / FASTEST, SOFTEST * unit)
         last = moved
         if size(run, _moved(run, start)) > FURTHEST:
             return False
-        rate, faster = max(rate / faster, LAST * pace), min(SLOWEST * faster, FASTEST)
+        rate, faster = max(rate / faster, lowest), min(SLOWEST * faster, FASTEST)
     return False
 
 
@@ -181,7 +191,7 @@ def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
     return change[:n]
 
 
-def _pace(run: Simulation, spin: Spin) -> float:
+def pace(run: Simulation, spin: Spin) -> float:
     """Square of the rate at which the loads begin to move the structure [1/time^2]."""
     unit = _springs(run, 1.0).stiffness
     tangent, residual = _linear(run, spin, None)

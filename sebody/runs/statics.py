@@ -16,11 +16,11 @@ from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.folding import Tensions
 from sebody.runs.rotating_frame import Spin
-from sebody.runs.settling import balance, settle
+from sebody.runs.settling import balance, pace, settle
 from sebody.runs.simulation import Simulation
 from sebody.runs.tuning import unbend
 
-STICKING = 1e-4             # step that bristles of friction are made for: what sticks hardly moves
+STICKING = 1e-7             # of extents: by which the loads move what sticks, no more
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 
 
@@ -101,13 +101,26 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
 
 def _at_rest(model: Model, t: float) -> Simulation:
     """The model as built, with all of the loads of a time and without rates."""
-    sticking = any(load.tuned for load in model.loads)
-    run = Simulation(model, STICKING if sticking else 1.0)
-    unbend(model, run.numbering, run.state)
+    run = _still(Simulation(model, 1.0), t)
+    if not any(load.tuned for load in model.loads):
+        # what nothing presses does not stick
+        run.state.q[run.system.is_multiplier[:run.state.q.size] > 0] = 0.0
+        return run
+    # bristles as stiff as loads move the model by this in a step: of its own time, not of units
+    still = Spin.of(run, None)
+    squares = [pace(run, still)]
+    run.state.loads[:], run.state.coefficients[FIELD:] = 0.0, 0.0       # but springs pull
+    squares.append(pace(run, still))
+    square = max(squares)
+    return _still(Simulation(model, np.sqrt(STICKING / square) if 0.0 < square < np.inf else 1.0),
+                  t)
+
+
+def _still(run: Simulation, t: float) -> Simulation:
+    """Without rates and bent bristles, with the loads of a time."""
+    unbend(run.model, run.numbering, run.state)
     state = run.state
     state.v[:], state.a[:], state.aux[:] = 0.0, 0.0, 0.0
-    if not sticking:        # what nothing presses does not stick
-        state.q[run.system.is_multiplier[:state.q.size] > 0] = 0.0
     set_loads(run.system, state.frames, state.loads, t)
     return run
 

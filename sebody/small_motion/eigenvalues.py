@@ -25,6 +25,8 @@ from scipy.linalg import LinAlgError, cholesky, eig, eigh, solve_triangular
 EPS = np.finfo(float).eps
 DAMPED = 10.0       # damping that is rounding, by that of the masses times the highest frequency
 TINY = 1e-300
+NEGLIGIBLE = 100 * EPS  # part of the largest square of a frequency that is rounding of all squares
+FLUTTER = 1e-6      # imaginary over real part of a square: less comes from rounding of double ones
 
 
 class Eigenvalues(NamedTuple):
@@ -57,6 +59,32 @@ def eigenvalues(M: NDArray, C: NDArray, K: NDArray) -> Eigenvalues:
     values, right, left = roots.values[order], roots.right[:, order], roots.left[:, order]
     return Eigenvalues(values, _normalised(right),
                        _rounding(M, C, K, values, right, left) + roots.added)
+
+
+def undamped(M: NDArray, K: NDArray) -> tuple[NDArray, NDArray]:
+    """Squares of frequencies without damping, ascending, and shapes of unit mass, both real.
+
+    Forces that turn with what they act on, and moments, have a stiffness that is not symmetric. In
+    the shapes of its symmetric part its skew part couples them, and may make pairs complex.
+
+    Raises
+    ------
+    LinAlgError
+        The mass is singular.
+    ArithmeticError
+        Squares are complex: some motion flutters.
+    """
+    squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+    skew = shapes.T @ ((K - K.T) / 2) @ shapes
+    rounding = NEGLIGIBLE * np.abs(squares).max(initial=0.0)
+    if np.abs(skew).max(initial=0.0) <= rounding:
+        return squares, shapes
+    values, turns = eig(np.diag(squares) + skew)
+    if np.any(np.abs(values.imag) > FLUTTER * np.abs(values.real) + rounding):
+        raise ArithmeticError
+    order = np.argsort(values.real)
+    turns = turns[:, order].real
+    return values.real[order], shapes @ (turns / np.linalg.norm(turns, axis=0))
 
 
 def _over(A: NDArray, L: NDArray) -> NDArray:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, eigh, null_space
+from scipy.linalg import LinAlgError, null_space
 
 from sebody import inputs
 from sebody.assembly.numbering import hidden_states
@@ -21,7 +21,7 @@ from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative, turning
 from sebody.small_motion import mode_tables
-from sebody.small_motion.eigenvalues import eigenvalues
+from sebody.small_motion.eigenvalues import NEGLIGIBLE, eigenvalues, undamped
 from sebody.small_motion.shapes import Shapes
 from sebody.tabular import brief
 
@@ -132,7 +132,7 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     Raises
     ------
     InputError
-        The state moves, or is not stable: a square of a frequency is negative.
+        The state moves, or is not stable: a square of a frequency is negative or complex.
     """
     if count is not None:
         count = inputs.integer(count, "count", least=1)
@@ -145,13 +145,17 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
                          "undamped vibrations: use modes()")
     M, _, K, free = linearize(run)[:4]
     try:
-        squares, shapes = eigh((K + K.T) / 2, (M + M.T) / 2)
+        squares, shapes = undamped(M, K)
     except LinAlgError as error:
         raise InputError("the model has motions without mass, which have no frequency: give every "
                          "rotation inertia, or use modes") from error
-    if squares[0] < -100 * np.finfo(float).eps * squares[-1]:
+    except ArithmeticError as error:
+        raise InputError("the state is not stable: loads that turn with the model make it flutter; "
+                         "modes() has the growth of its motions") from error
+    if squares[0] < -NEGLIGIBLE * squares[-1]:
         raise InputError("the state is not stable: the lowest squared frequency is negative, "
-                         f"{squares[0]:.4g}")
+                         f"{squares[0]:.4g}; modes() has the shape and the growth of this motion. "
+                         "Start from an equilibrium to which it leads, or hold it")
     return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
                       Shapes(run))
 

@@ -88,7 +88,6 @@ def test_a_turned_floor_gives_turned_motion(bristle):
 def test_equilibrium_sticks_or_slides():
     model = incline(0.4)
     found = equilibrium(model)
-    # a bristle for a step of 1e-4 gives way by 1e-8 of g
     assert np.abs(found["block.position"][-1]).max() < 1e-7
     result = simulate(model, 1e-2, 1.0, start=found)
     assert np.ptp(result["block.position"], axis=0).max() < 1e-12
@@ -97,6 +96,21 @@ def test_equilibrium_sticks_or_slides():
     assert sliding.contacts == {"dry": "slides"}
     assert abs(sliding.stiffness[0, 0]) < 1e-9      # sliding friction has none
     assert linearize(result).stiffness[0, 0] > 1.0
+
+
+@pytest.mark.parametrize("time", [1e-3, 1.0, 1e3])
+def test_equilibrium_sticks_in_any_unit_of_time(time):
+    """What a hinge holds beside a spring; in units of 1000 s it gave way by 3 degrees."""
+    model = Model(planar=True)
+    model.node("root", (0.0, 0.0))
+    model.rigid_body("bar", "root", 1.0, 1.0 / 12.0, centre=(0.5, 0.0))
+    model.revolute("root", name="hinge")
+    model.torsion_spring("root", 50.0 / time**2)
+    model.gravity((0.0, -G / time**2))
+    model.friction("hinge", 0.4, radius=0.05, preload=300.0 / time**2, name="dry")
+    found = equilibrium(model)
+    assert abs(found["root.rotation"][-1]) < 1e-6
+    assert found["dry.moment"][-1] * time**2 == pytest.approx(G / 2.0, rel=1e-5)
 
 
 def test_linearized_contact():

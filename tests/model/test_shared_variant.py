@@ -133,3 +133,23 @@ def test_what_cannot_be_shared_is_said():
     thrown.initial_velocity("other", linear=(1, 0, 0))
     with pytest.raises(InputError, match="joint 'joint' has no equations that shared"):
         shared(thrown, "joint")
+
+
+def test_joints_whose_forces_press_keep_their_equations():
+    """Friction reads the multipliers of its joint; without them its kernel did not fit."""
+    model = Model()
+    for name in ("hinge", "pin"):
+        model.node(name, (0.0, 0.0, 0.0) if name == "hinge" else (1.0, 0.0, 0.0))
+        model.rigid_body(f"bar {name}", name, 1.0, (0.1, 0.2, 0.3))
+    model.attach("end", (1.0, 0.0, 0.0), "hinge")
+    model.revolute("hinge", axis=(0.0, 0.6, 0.8), name="dry", explicit=True)
+    model.spherical("pin", to="end", name="ball")
+    model.friction("dry", 0.3, radius=0.02)
+    model.gravity((0.0, 0.0, -9.81))
+    with pytest.raises(InputError, match="'dry' keeps its equations, whose forces press 'friction "
+                                         "in dry': define that with reaction=False and a preload"):
+        shared(model, "dry")
+    assert can_be_shared(model) == ["ball"]
+    made = shared(model).model
+    one, other = (simulate(m, 1e-3, 0.1)["end.position"] for m in (model, made))
+    assert one == pytest.approx(other, abs=1e-5)        # second order in the step

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, SimulationError
 from sebody.analysis import equilibrium, vibrations
-from sebody.fem import StiffnessSection
+from sebody.fem import StiffnessSection, rectangle
 
 WEIGHT = 9.81
 
@@ -184,3 +184,30 @@ def test_what_nothing_stops_is_no_structure():
     with pytest.raises(SimulationError, match="no equilibrium was found above 0 of the load: .* or "
                                               "a mechanism may be free to move; use more steps"):
         equilibrium(model)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_flat_rod_on_a_ball_joint_rolls_until_it_lies(seed):
+    """Only its sag keeps it from rolling, so a small part of the load holds it a hundredth as much.
+
+    In steps of a tenth no equilibrium was found. The force of gravity is along `up` of the section
+    or across it; at rest the rod has rolled until it sags about its weak axis.
+    """
+    turn = Rotation.random(random_state=seed).as_matrix()
+    model = Model()
+    root, tip = (model.node(name, turn[:, 0] * x) for name, x in (("root", 0.0), ("tip", 1.0)))
+    up = turn @ (0.0, np.cos(0.5), np.sin(0.5))
+    model.beam("rod", (root, tip), rectangle(0.02, 0.012, 7e10, 0.3, 2700.0), 4, bodies=1, modes=2,
+               up=up)
+    model.spherical(root)
+    for k, place in enumerate([(1.3, 0.4, 0.1), (1.2, -0.3, 0.2), (0.9, 0.1, 0.5)]):
+        wall = model.node(f"wall {k}", turn @ place)
+        model.fix(wall)
+        model.spring(tip, wall, 800.0, length=0.3)
+    model.gravity(-9.81 * turn[:, 2])
+    found = equilibrium(model)
+    rolled = found["tip.rotation"][-1] @ up
+    along = found["tip.position"][-1] / np.linalg.norm(found["tip.position"][-1])
+    vertical = turn[:, 2] - along * (along @ turn[:, 2])
+    assert abs(rolled @ vertical) < 1e-3 or abs(np.linalg.norm(np.cross(rolled, vertical))) < 1e-3
+    assert vibrations(found).omega[0] > 1.0         # rolling swings about the sag

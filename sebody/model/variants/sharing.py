@@ -44,6 +44,10 @@ def shared(model: Mechanism, name: str | None = None) -> Variant:
     possible = can_be_shared(model)
     if not (possible if name is None else any(
             _kinds(model, joint) for joint in model.joints if joint.name == name)):
+        if reading := [load.name for load in model.loads if load.pressed_by is not None
+                       and load.pressed_by.name == name]:
+            raise InputError(f"joint {name!r} keeps its equations, whose forces press "
+                             f"{reading[0]!r}: define that with reaction=False and a preload")
         what = "the model has no joint with" if name is None else f"joint {name!r} has no"
         others = f"; of this model {', '.join(possible)} has some" if possible else ""
         raise InputError(f"{what} equations that shared positions or rotations can replace{others}")
@@ -77,7 +81,9 @@ def _is_free(model: Mechanism, node: Node) -> bool:
 
 
 def _kinds(model: Mechanism, joint: Joint) -> list[str]:
-    """Which DOF blocks of its nodes may become one."""
+    """Which DOF blocks of its nodes may become one; none where friction reads the equations."""
+    if any(load.pressed_by is joint for load in model.loads):
+        return []
     return [kind for kind in ("position", "rotation")
             if _replaced(joint, kind) and _can_share(model, joint, kind)]
 
