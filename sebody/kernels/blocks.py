@@ -65,7 +65,7 @@ def write_multiply_and_subtract(builder, y, rows, A, x, first, end):
     numbers = _lanes(builder, load_vector(builder, x, WORD(0)))
     a, b, c, d = (builder.fmul(column, number) for column, number in
                   zip(_columns(builder, A, end), numbers, strict=True))
-    result = builder.fadd(builder.fadd(a, b), builder.fadd(c, d))
+    result = builder.fadd(builder.fadd(builder.fadd(a, b), c), d)
     store_vector(builder, result, x, WORD(0))
     numbers, last = _lanes(builder, result), builder.sub(builder.add(first, end), WORD(1))
     with short_loop(builder, first, end) as k:

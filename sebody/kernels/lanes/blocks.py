@@ -39,7 +39,7 @@ def multiply_and_subtract(builder, y, rows, A, x, first, end):
     for i in range(LANES):
         a, b, c, d = (builder.fmul(read(builder, A, behind(builder, begin, LANES * k + i)), number)
                       for k, number in enumerate(given))
-        factors.append(builder.fadd(builder.fadd(a, b), builder.fadd(c, d)))
+        factors.append(builder.fadd(builder.fadd(builder.fadd(a, b), c), d))
         write(builder, factors[i], x, WORD(i))
     last = builder.sub(builder.add(first, end), WORD(1))
     with short_loop(builder, first, end) as k:
