@@ -16,7 +16,7 @@ from sebody.contract.counts import packed_size, whole_vectors
 from sebody.contract.layout import OK
 from sebody.derive.symbolic.rotations import stumpff_value, tangent_inverse_value
 from sebody.kernels.abi import Arguments
-from sebody.kernels.packed import multiples, strips
+from sebody.kernels.packed import diagonals_of, multiples, strips
 from sebody.verify.check.states import arguments
 
 
@@ -92,6 +92,8 @@ def _products(matrices):
             if use.transposed:
                 at, entries = at[::-1], entries.T
             yield use.vector, use.place, use.matrix, *at, entries
+    for place, matrix, _, numbers in diagonals_of(matrices):
+        yield 0, place, matrix, 0, 0, np.diag(numbers)
 
 
 def packed_times(matrices, x, out, count):

@@ -16,6 +16,7 @@ _POINTERS = {"int64": types.CPointer(types.int64), "float64": types.CPointer(typ
 SIGNATURE = types.int64(*[types.int64] * 4, *[_POINTERS[kind] for _, kind, _ in ARGUMENTS])
 
 CONTRACT = {"contract"}     # a product and a sum in one rounding
+ANY_ORDER = {"reassoc"}     # sums in any order: loops may be compiled to vector instructions
 OF_KERNELS = {"error_model": "numpy", "fastmath": CONTRACT}
 
 

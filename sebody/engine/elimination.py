@@ -18,7 +18,11 @@ times a vector without force is rounding before it is divided by the pivot.
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import LANES
 from sebody.kernels.abi import at, pointer_to
-from sebody.kernels.dense import subtract_blocks_times, subtract_product
+from sebody.kernels.blocks import (
+    multiply_and_subtract,
+    subtract_blocks_times,
+    subtract_product,
+)
 
 BLOCK = LANES * LANES
 SMALL_PIVOT = 1e-11     # relative to the scaled matrix, whose diagonal is one
@@ -160,15 +164,12 @@ def substitute_back(first, end, regularized, starts, rows, diagonal, factors, x)
     """The same with U."""
     for k in range(end - first):
         j = end - 1 - k
-        y, inverse = at(x, LANES * j), at(factors, BLOCK * diagonal[j])
+        y = at(x, LANES * j)
         if regularized:
-            _divide_vector(y, inverse)
+            _divide_vector(y, at(factors, BLOCK * diagonal[j]))
+            subtract_blocks_times(x, rows, factors, y, starts[j], diagonal[j])
         else:
-            a, b, c, d = y[0], y[1], y[2], y[3]
-            for i in range(LANES):
-                y[i] = (inverse[i] * a + inverse[4 + i] * b + inverse[8 + i] * c
-                        + inverse[12 + i] * d)
-        subtract_blocks_times(x, rows, factors, y, starts[j], diagonal[j])
+            multiply_and_subtract(x, rows, factors, y, starts[j], diagonal[j])
 
 
 @compiled

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from sebody.compiler.decorators import compiled
+from sebody.compiler.decorators import ANY_ORDER, compiled
 from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
@@ -105,16 +105,25 @@ def leaves_gap(system, state, norm, stabilized):
 @compiled(forceinline=True)
 def norms(system, state, n):
     """Norms of the correction, of the increment with the multipliers, and of the accelerations."""
+    norm, size, accelerations = _squares(
+        n, pointer_to(state.correction), pointer_to(state.shift), pointer_to(state.dq),
+        pointer_to(state.q_old), pointer_to(state.a), pointer_to(state.weight),
+        pointer_to(system.is_multiplier))
+    return math.sqrt(norm), math.sqrt(size), math.sqrt(accelerations)
+
+
+@compiled(forceinline=True, fastmath=ANY_ORDER)
+def _squares(n, correction, shift, dq, q_old, a, weight, is_multiplier):
+    """Sums in any order, which only tell when the iteration ends."""
     norm = size = accelerations = 0.0
     for i in range(n):
-        d = state.correction[i] * state.weight[i]
-        x = state.dq[i] + system.is_multiplier[i] * state.q_old[i]      # a multiplier itself
-        z = state.a[i] * state.weight[i]
-        s = state.shift[i] * state.weight[i]
+        w = weight[i]
+        d, s, z = correction[i] * w, shift[i] * w, a[i] * w
+        x = (dq[i] + is_multiplier[i] * q_old[i]) * w       # of a multiplier itself
         norm += d * d + s * s
-        size += x * x * state.weight[i] * state.weight[i]
+        size += x * x
         accelerations += z * z
-    return math.sqrt(norm), math.sqrt(size), math.sqrt(accelerations)
+    return norm, size, accelerations
 
 
 @compiled(forceinline=True)

@@ -14,7 +14,7 @@ The fit costs as much as a part of a correction. Whether it saves as much is tri
 of `PERIOD` steps it is made, in others not, and the mean corrections of both are compared.
 """
 
-from sebody.compiler.decorators import compiled
+from sebody.compiler.decorators import ANY_ORDER, compiled
 from sebody.kernels.abi import at, pointer_to
 
 ORDER = 8
@@ -82,22 +82,12 @@ def look_back(system, state, of_accelerations):
     fit = pointer_to(state.fit)
     steps = ring_place(state.control.steps, state.control.grid)
     compare_periods(fit, state.control.iteration, state.control.steps)
-    now, last, before = row(state, steps), row(state, steps - 1), row(state, steps - 2)
-    weighted, fitted = pointer_to(state.correction), pointer_to(state.fitted)
-    of_none = of_line = of_parabola = of_fit = 0.0 * fit[ON]
-    for i in range(system.diagonal.size):
-        constraint = system.is_multiplier[i]
-        w = state.weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
-        x = state.aux[i] - state.aux_old[i] + constraint * (state.q[i] - state.q_old[i])
-        line = x - last[i]
-        parabola = line - (last[i] - before[i])
-        error = x - fitted[i]
-        w *= w
-        of_none += w * x * x
-        of_line += w * line * line
-        of_parabola += w * parabola * parabola
-        of_fit += w * error * error
-        now[i], weighted[i] = x, w * x
+    of_none, of_line, of_parabola, of_fit = _errors(
+        system.diagonal.size, row(state, steps), row(state, steps - 1), row(state, steps - 2),
+        pointer_to(state.correction), pointer_to(state.fitted), pointer_to(state.q),
+        pointer_to(state.q_old), pointer_to(state.aux), pointer_to(state.aux_old),
+        pointer_to(state.weight), pointer_to(system.is_multiplier), of_accelerations,
+        0.0 * fit[ON])
     zero = 0.0 * of_none        # in lanes these are lanes
     straight = of_line < BETTER * of_none
     least = either(straight, of_line, of_none)
@@ -110,6 +100,30 @@ def look_back(system, state, of_accelerations):
     fit[FITTED] = either(best, zero + 1.0, zero)
     if any_positive(fit[ON]):
         _fit_anew(system, state, steps)
+
+
+@compiled(apart=True, fastmath=ANY_ORDER)
+def _errors(n, now, last, before, weighted, fitted, q, q_old, aux, aux_old, weight, is_multiplier,
+            of_accelerations, none):
+    """Keep changes and weighted changes; the squares of what each prediction would have missed.
+
+    Sums in any order, which only tell what to predict next.
+    """
+    of_none = of_line = of_parabola = of_fit = none
+    for i in range(n):
+        constraint = is_multiplier[i]
+        w = weight[i] * (constraint + (1.0 - constraint) * of_accelerations)
+        x = aux[i] - aux_old[i] + constraint * (q[i] - q_old[i])
+        line = x - last[i]
+        parabola = line - (last[i] - before[i])
+        error = x - fitted[i]
+        w *= w
+        of_none += w * x * x
+        of_line += w * line * line
+        of_parabola += w * parabola * parabola
+        of_fit += w * error * error
+        now[i], weighted[i] = x, w * x
+    return of_none, of_line, of_parabola, of_fit
 
 
 @compiled

@@ -62,9 +62,9 @@ def write_all_to_free(builder, *args):
                 add_product(builder, total, entries, load_broadcast(builder, given, column))
         for total, place in zip(sums, targets, strict=True):
             store_vector(builder, builder.load(total), place, row)
-    with short_loop(builder, WORD(0), builder.sub(free, bound_free)) as mode:
-        for given, place in zip(rows, targets, strict=True):
-            _copy(builder, given, builder.add(bound, mode), place, builder.add(bound_free, mode))
+    for given, place in zip(rows, targets, strict=True):
+        _copy(builder, builder.gep(given, [bound]), builder.gep(place, [bound_free]),
+              builder.sub(free, bound_free))
     _in_order(builder, targets, order, to, free, end)
 
 
@@ -95,8 +95,13 @@ def _in_order(builder, rows, order, to, count, end):
     vectors(whole, end, ordered_or_zero)
 
 
-def _copy(builder, given, at, out, to):
-    builder.store(builder.load(builder.gep(given, [at])), builder.gep(out, [to]))
+def _copy(builder, given, out, count):
+    """Some numbers, whole vectors of them first."""
+    whole = builder.and_(count, WORD(-LANES))
+    with short_loop(builder, WORD(0), whole, LANES) as k:
+        store_vector(builder, load_vector(builder, given, k), out, k)
+    with short_loop(builder, whole, count) as k:
+        builder.store(builder.load(builder.gep(given, [k])), builder.gep(out, [k]))
 
 
 def write_follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
@@ -104,12 +109,14 @@ def write_follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
     kept = _room(builder)
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b = _of_one((Zq, Zd), builder, b, height)
-        sums = _dots(builder, height, (((Zq_b, z),), ((Zq_b, zd),), ((Zq_b, zdd), (Zd_b, zd))))
+        sums = _dots(builder, height, (
+            ((Zq_b, z),), ((Zq_b, zd),), ((Zq_b, zdd),), ((Zd_b, zd),)))    # none waits for two
         store_vector(builder, sums, kept, builder.mul(b, WORD(LANES)))
     with short_loop(builder, WORD(0), slaved) as b:
-        value, rate, second = _kept(builder, kept, b, 3)
+        value, rate, second, beside = _kept(builder, kept, b, LANES)
         place = builder.add(free, b)
-        for out, number in ((z, builder.fmul(value, half)), (zd, rate), (zdd, second)):
+        for out, number in ((z, builder.fmul(value, half)), (zd, rate),
+                            (zdd, builder.fadd(second, beside))):
             builder.store(number, builder.gep(out, [place]))
 
 

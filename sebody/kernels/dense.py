@@ -9,7 +9,6 @@ from sebody.kernels.instructions import (
     WORD,
     add_product,
     added_up,
-    broadcast,
     called,
     inlined,
     load_broadcast,
@@ -265,49 +264,6 @@ def _added(builder, parts):
     for total in parts[1:]:
         result = builder.fadd(result, builder.load(total))
     return result
-
-
-@intrinsic
-def subtract_product(typingctx, C, A, B):
-    """``C -= A B`` of square blocks of `LANES` rows, stored by columns."""
-    return inlined(write_subtract_product, C, A, B)
-
-
-def write_subtract_product(builder, C, A, B):
-    """Instructions of `subtract_product`."""
-    columns = [load_vector(builder, A, WORD(LANES * k)) for k in range(LANES)]
-    for j in range(LANES):
-        total = load_vector(builder, C, WORD(LANES * j))
-        for k, column in enumerate(columns):
-            number = builder.load(builder.gep(B, [WORD(LANES * j + k)]))
-            product = builder.fmul(column, broadcast(builder, number),
-                                   flags=("contract",))
-            total = builder.fsub(total, product, flags=("contract",))
-        store_vector(builder, total, C, WORD(LANES * j))
-
-
-@intrinsic
-def subtract_blocks_times(typingctx, y, rows, A, x, first, end):
-    """``y_r -= A_p x`` of square blocks of `LANES` rows, p from `first` up to `end`.
-
-    `rows` has the block r of y for each p; blocks are stored by columns. The numbers of x stay in
-    registers, as y does not overlap x.
-    """
-    return inlined(write_subtract_blocks_times, y, rows, A, x, first, end)
-
-
-def write_subtract_blocks_times(builder, y, rows, A, x, first, end):
-    """Instructions of `subtract_blocks_times`."""
-    numbers = [load_broadcast(builder, x, WORD(k)) for k in range(LANES)]
-    with short_loop(builder, first, end) as p:
-        place = builder.mul(builder.load(builder.gep(rows, [p])), WORD(LANES))
-        begin = builder.mul(p, WORD(LANES * LANES))
-        total = load_vector(builder, y, place)
-        for k, number in enumerate(numbers):
-            column = load_vector(builder, A, builder.add(begin, WORD(LANES * k)))
-            product = builder.fmul(column, number, flags=("contract",))
-            total = builder.fsub(total, product, flags=("contract",))
-        store_vector(builder, total, y, place)
 
 
 @compiled

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.counts import LANES, packed_size
-from sebody.kernels.packed import MULTIPLE, Group, alone, coupled, mirrored, padded, row_of
+from sebody.kernels.packed import padded, row_of
+from sebody.kernels.packed_groups import MULTIPLE, Group, alone, coupled, mirrored
 
 ROUNDING = 1e-11        # of what entries can be; in rows that are multiples some 2e-13 is left
 
@@ -39,7 +40,7 @@ def pack_couplings(squares: NDArray, couplings: NDArray) -> NDArray:
     groups += alone(C + others, first, behind=count)
     groups += alone(others.transpose(0, 2, 1), first + 2 * count, vector=1)
     groups += [Group(MULTIPLE, height * place, height * other, (), factors.reshape(-1, 1, LANES))
-               for place, other, factors in multiples]
+               for place, other, factors in sorted(multiples, key=lambda one: one[0])]
     return row_of(groups, size)
 
 

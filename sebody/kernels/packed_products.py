@@ -3,7 +3,7 @@
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.kernels import packed_strips
+from sebody.kernels import packed_strips, packed_sums
 from sebody.kernels.abi import padded
 from sebody.kernels.dense import columns_times
 from sebody.kernels.instructions import called
@@ -71,7 +71,7 @@ def add_packed(typingctx, matrices, factors, out, height):
 
     Zeros are added to columns of `out` up to a multiple of `LANES`.
     """
-    return called(packed_strips.write_sum, matrices, factors, out, height)
+    return called(packed_sums.write_sum, matrices, factors, out, height)
 
 
 @intrinsic
@@ -80,5 +80,5 @@ def add_couplings(typingctx, matrices, factors, scales, of_x, of_y, products, si
 
     Factors are those of the products, of `size` numbers each; `scales` has room for all of them.
     """
-    return called(packed_strips.write_sum_of_couplings, matrices, factors, scales, of_x, of_y,
+    return called(packed_sums.write_sum_of_couplings, matrices, factors, scales, of_x, of_y,
                   products, size, height)

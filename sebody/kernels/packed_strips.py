@@ -1,4 +1,4 @@
-"""Instructions of products with packed matrices, and of their sums: group by group.
+"""Instructions of products with packed matrices: group by group.
 
 Vectors have four numbers: with those of eight everything else became a twentieth slower, probably
 since the processor lowers its clock.
@@ -22,19 +22,8 @@ from sebody.kernels.instructions import (
     sums_of_lanes,
     totals,
 )
-from sebody.kernels.packed import (
-    BEGIN,
-    BEHIND,
-    BOTH,
-    COUPLED,
-    GROUP,
-    HEAD,
-    KINDS,
-    MIRRORED,
-    MULTIPLE,
-    ONCE,
-    PRODUCTS,
-)
+from sebody.kernels.packed import BEGIN, BEHIND, GROUP, KINDS, PRODUCTS
+from sebody.kernels.packed_groups import BOTH, COUPLED, DIAGONAL, MIRRORED, MULTIPLE, ONCE
 
 _CLEARED = 8        # vectors at a time
 
@@ -72,23 +61,32 @@ class Groups:
 
     @contextmanager
     def vectors(self) -> Iterator[tuple[ir.Value, ir.Value, ir.Value]]:
-        """Vectors of a multiple: factors, and places of numbers of its product and of the other."""
+        """Vectors of a multiple, or of a diagonal: factors, and places of their products.
+
+        Then the places of what they multiply.
+        """
         builder = self.builder
         with short_loop(builder, WORD(0), self.strips) as k:
             at = builder.mul(k, WORD(LANES))
             yield (load_vector(builder, self.matrices, builder.add(self.begin, at)),
                    builder.add(self.first, at), builder.add(self.vector, at))
 
-    def head(self, k: int, strip: ir.Value | None = None, size: int = HEAD) -> ir.Value:
-        """A whole number of the heads, or of that of a strip."""
+    def head(self, k: int, strip: ir.Value | None = None) -> ir.Value:
+        """A whole number of the heads: number k, or that of a strip of those from there on."""
         builder, place = self.builder, self.heads
         if strip is not None:
-            place = builder.add(place, builder.mul(strip, WORD(size)))
+            place = builder.add(place, strip)
         return self.at(builder.add(place, WORD(k)))
+
+    def matrix_and_row(self, k: int, strip: ir.Value) -> list[ir.Value]:
+        """Matrix and first row of a strip whose place is among those from number k on."""
+        builder = self.builder
+        place = builder.add(self.heads, builder.add(self.strips, builder.mul(strip, WORD(2))))
+        return [self.at(builder.add(place, WORD(k + i))) for i in range(2)]
 
     def row(self, strip: ir.Value) -> ir.Value:
         """First row of a strip of a group that is used twice."""
-        return self.head(2 * PRODUCTS, strip, 1)
+        return self.head(2 * PRODUCTS, strip)
 
     def entries(self, strip: ir.Value) -> ir.Value:
         """Pointer to the entries of a strip."""
@@ -100,9 +98,6 @@ class Groups:
         """What belongs to the group's vector."""
         is_first = self.builder.icmp_signed("==", self.vector, WORD(0))
         return self.builder.select(is_first, first, second)
-
-
-# products
 
 
 def write_times(builder, matrices, x, out, count):
@@ -121,7 +116,7 @@ def write_times_both(builder, matrices, x, y, of_x, of_y, count):
 
 
 def write_couplings(builder, matrices, x, y, out, count):
-    _clear(builder, out, count)
+    _clear_sums(builder, matrices, out, count)
     Groups(builder, matrices).each({
         ONCE: lambda groups: _once(groups, [(groups.chosen(x, y), out)]),
         BOTH: lambda groups: _both(groups, x, y, out),
@@ -134,7 +129,28 @@ def _of_vectors(given):
     """Uses of groups that multiply every one of some vectors."""
     forward = [(0, x, out) for x, out in given]
     return {ONCE: lambda groups: _once(groups, given),
-            MIRRORED: lambda groups: _twice(groups, forward, given)}
+            MIRRORED: lambda groups: _twice(groups, forward, given),
+            DIAGONAL: lambda groups: _diagonal(groups, given)}
+
+
+def _clear_sums(builder, matrices, out, count):
+    """Zeros where products are sums: those that are multiples are only written.
+
+    Multiples stand in the order of their products.
+    """
+    with builder.goto_entry_block():
+        done = builder.alloca(WORD)
+    builder.store(WORD(0), done)
+
+    def clear_until(end):
+        first = builder.load(done)
+        _clear(builder, builder.gep(out, [first]), builder.sub(end, first))
+
+    def before_multiple(groups):
+        clear_until(groups.first)
+        builder.store(builder.add(groups.first, builder.mul(groups.strips, WORD(LANES))), done)
+    Groups(builder, matrices).each({MULTIPLE: before_multiple})
+    clear_until(count)
 
 
 def _clear(builder, out, count):
@@ -154,7 +170,7 @@ def _once(groups, given):
     builder = groups.builder
     factors = [_factors(groups, x) for x, _ in given]
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        place, columns = groups.head(0, strip), _columns(groups, strip)
+        place, columns = groups.head(0, strip), columns_of(groups, strip)
         for (_, out), numbers in zip(given, factors, strict=True):
             _add_times(builder, out, place, columns, numbers)
 
@@ -165,7 +181,7 @@ def _both(groups, x, y, out):
     factors = [_factors(groups, vector) for vector in (x, y)]
     behind = groups.head(0)
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        place, columns = groups.head(BEHIND, strip), _columns(groups, strip)
+        place, columns = groups.head(BEHIND, strip), columns_of(groups, strip)
         for numbers in factors:
             _add_times(builder, out, place, columns, numbers)
             place = builder.add(place, behind)
@@ -184,7 +200,7 @@ def _twice(groups, forward, across):
     for total in (total for of_one in sums for total in of_one):
         builder.store(no_sum(), total)
     with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, columns = groups.row(strip), _columns(groups, strip)
+        row, columns = groups.row(strip), columns_of(groups, strip)
         for (product, _, out), numbers in zip(forward, factors, strict=True):
             _add_times(builder, out, builder.add(places[product], row), columns, numbers)
         for (x, _), of_one in zip(across, sums, strict=True):
@@ -205,7 +221,17 @@ def _multiple(groups, out):
         store_vector(builder, builder.fmul(factors, load_vector(builder, out, other)), out, place)
 
 
-def _columns(groups, strip):
+def _diagonal(groups, given):
+    """Vectors of a diagonal, times those of some vectors."""
+    builder = groups.builder
+    with groups.vectors() as (factors, place, other):
+        for x, out in given:
+            total = fused(builder, load_vector(builder, out, place), factors,
+                          load_vector(builder, x, other))
+            store_vector(builder, total, out, place)
+
+
+def columns_of(groups, strip):
     """The columns of a strip."""
     own = groups.entries(strip)
     return [load_vector(groups.builder, own, WORD(LANES * k)) for k in range(groups.width)]
@@ -225,7 +251,7 @@ def _add_times(builder, out, place, columns, factors):
     """
     product = builder.fmul(columns[0], factors[0])
     for column, factor in zip(columns[1:], factors[1:], strict=True):
-        product = _added(builder, product, column, factor)
+        product = fused(builder, product, column, factor)
     _add_to(builder, out, place, product)
 
 
@@ -233,94 +259,5 @@ def _add_to(builder, out, place, vector):
     store_vector(builder, builder.fadd(load_vector(builder, out, place), vector), out, place)
 
 
-def _added(builder, total, a, b):
+def fused(builder, total, a, b):
     return builder.fadd(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
-
-
-# sums
-
-
-def write_sum(builder, matrices, factors, out, height):
-    def scale(_, matrix):
-        return load_broadcast(builder, factors, matrix)
-    Groups(builder, matrices).each({
-        ONCE: lambda groups: _sum_once(groups, scale, [out], height),
-        MIRRORED: lambda groups: _sum_twice(groups, scale, [out], out, height)})
-
-
-def write_sum_of_couplings(builder, matrices, factors, scales, of_x, of_y, products, size, height):
-    _write_scales(builder, matrices, factors, scales, products, size)
-
-    def scale(place, _):
-        return load_vector(builder, scales, place)
-    Groups(builder, matrices).each({
-        ONCE: lambda groups: _sum_once(groups, scale, [groups.chosen(of_x, of_y)], height),
-        BOTH: lambda groups: _sum_once(groups, scale, [of_x, of_y], height),
-        MIRRORED: lambda groups: _sum_twice(groups, scale, [of_x], of_x, height),
-        COUPLED: lambda groups: _sum_twice(groups, scale, [of_x, of_y], of_y, height)})
-
-
-def _write_scales(builder, matrices, factors, scales, products, size):
-    """The factor of every row of every product, with those of what is made from it."""
-    with short_loop(builder, WORD(0), products) as k:
-        factor, first = load_broadcast(builder, factors, k), builder.mul(k, size)
-        with short_loop(builder, WORD(0), size, LANES) as row:
-            store_vector(builder, factor, scales, builder.add(first, row))
-
-    def of_multiple(groups):
-        with groups.vectors() as (multiples, place, other):
-            total = _added(builder, load_vector(builder, scales, other), multiples,
-                           load_vector(builder, scales, place))
-            store_vector(builder, total, scales, other)
-    Groups(builder, matrices).each({MULTIPLE: of_multiple})
-
-
-def _sum_once(groups, scale, outs, height):
-    """Strip by strip; of both vectors those of the second one are behind."""
-    builder = groups.builder
-    begin, behind = ((BEHIND, [groups.head(k) for k in range(2)]) if len(outs) > 1
-                     else (0, [WORD(0)] * 2))
-    with short_loop(builder, WORD(0), groups.strips) as strip:
-        place, matrix, row = (groups.head(begin + k, strip) for k in range(HEAD))
-        columns = _columns(groups, strip)
-        for out in outs:
-            _add_columns(builder, columns, scale(place, matrix), out, groups.first, height, row)
-            place, matrix = (builder.add(one, more) for one, more in
-                             zip((place, matrix), behind, strict=True))
-
-
-def _sum_twice(groups, scale, outs, across, height):
-    """The same of strips of one matrix, and of their transposes."""
-    builder = groups.builder
-    places, matrices = ([groups.head(first + k) for k in range(PRODUCTS)]
-                        for first in (0, PRODUCTS))
-    with short_loop(builder, WORD(0), groups.strips) as strip:
-        row, columns = groups.row(strip), _columns(groups, strip)
-        for k, out in enumerate(outs):
-            by = scale(builder.add(places[k], row), matrices[k])
-            _add_columns(builder, columns, by, out, groups.first, height, row)
-        for k in range(0, groups.width, LANES):
-            first = builder.add(groups.first, WORD(k))
-            by = scale(builder.add(places[-1], first), matrices[-1])
-            _add_columns(builder, _transposed(builder, columns[k:k + LANES]), by, across, row,
-                         height, first)
-
-
-def _add_columns(builder, columns, scale, out, first, height, row):
-    """Add some columns to those of a matrix, from a column and a row on."""
-    for k, column in enumerate(columns):
-        place = builder.add(builder.mul(builder.add(first, WORD(k)), height), row)
-        store_vector(builder, _added(builder, load_vector(builder, out, place), column, scale),
-                     out, place)
-
-
-def _transposed(builder, columns):
-    """Rows of a square block."""
-    def joined(a, b, lanes):
-        return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), LANES),
-                                                        lanes))
-    a, b, c, d = columns
-    low = [joined(*two, [0, LANES, 2, LANES + 2]) for two in ((a, b), (c, d))]
-    high = [joined(*two, [1, LANES + 1, 3, LANES + 3]) for two in ((a, b), (c, d))]
-    halves = [0, 1, LANES, LANES + 1], [2, 3, LANES + 2, LANES + 3]
-    return [joined(*two, lanes) for lanes in halves for two in (low, high)]

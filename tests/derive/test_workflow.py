@@ -188,7 +188,7 @@ def test_change_a_function_that_a_kernel_reaches_through_another(original, tmp_p
      "return ratio * x, ratio * y, 0.5 * ratio * z, cosine",
      "search", "0 -0.3 -0.1 0.4", "0 -0.15 -0.05 0.2"),
     # compiled into the elimination: 1/(2 - 1/2), and with all products doubled 1/(2 (2 - 1))
-    ("kernels/dense.py", "store_vector(builder, total, C, WORD(LANES * j))",
+    ("kernels/blocks.py", "store_vector(builder, total, C, WORD(LANES * j))",
      "store_vector(builder, builder.fadd(total, total), C, WORD(LANES * j))",
      "elimination", "0.666667", "0.5"),
     # constants of other files

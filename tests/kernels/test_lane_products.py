@@ -16,7 +16,7 @@ from sebody.kernels.dense import (
     columns_times,
     columns_times_all,
 )
-from sebody.kernels.packed import multiples, pack
+from sebody.kernels.packed import diagonals_of, multiples, pack
 from sebody.kernels.packed_couplings import pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
@@ -166,6 +166,32 @@ def test_packed_products(straight, shared, row_of_all):
         return
     found = total.values.reshape(-1, height, MEMBERS)[:columns, :rows]
     np.testing.assert_allclose(found, np.einsum("mkrc,km->crm", stacks, factors), atol=1e-13)
+
+
+@pytest.mark.parametrize("straight, row_of_all", [
+    (False, False), (True, False), (False, True), (True, True)])
+def test_diagonals(straight, row_of_all):
+    """Those that stand apart, beside a full row, by number and as straight code."""
+    rng, N = np.random.default_rng(7), 20
+    stacks = np.zeros((MEMBERS, 1, N, N))
+    stacks[:, 0, range(N), range(N)] = rng.normal(size=(MEMBERS, N))
+    stacks[:, 0, 1] = rng.normal(size=(MEMBERS, N))
+    if row_of_all:
+        stacks[:] = stacks[0]
+    row = np.array([pack(stack, stack.shape) for stack in stacks]).T
+    assert len(list(diagonals_of(row[:, 0]))) == 1
+    packed = numbers_of_all(row[:, 0].copy()) if row_of_all else Given.of(row)
+    if straight and row_of_all:
+        _kept = write_shared_address(packed.rows[0], np.ptp(row, axis=1) > 0.0, row)
+    elif straight:
+        _kept = write_address(row[:, 0].copy(), np.ptp(row, axis=1) > 0.0, packed.values)
+    x, factors = rng.normal(size=(N + LANES, MEMBERS)), rng.normal(size=(1, MEMBERS))
+    out, total = Given.of(np.full((N, MEMBERS), np.nan)), Given.of(np.zeros((N * N, MEMBERS)))
+    packed_products_of(packed, Given.of(x), out, Given.of(factors), total, N, N)
+    expected = np.einsum("mrc,cm->rm", stacks[:, 0], x[:N])
+    np.testing.assert_allclose(out.values, 2.0 * expected, atol=1e-13)
+    np.testing.assert_allclose(total.values.reshape(N, N, MEMBERS),
+                               np.einsum("mrc,m->crm", stacks[:, 0], factors[0]), atol=1e-13)
 
 
 def test_straight_code_is_freed_once_nobody_keeps_it():

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.counts import packed_size, whole_vectors
+from sebody.contract.counts import LANES, packed_size, whole_vectors
 from sebody.kernels.abi import pointer_to
-from sebody.kernels.packed import multiples, pack, strips, unpack
+from sebody.kernels.packed import diagonals_of, multiples, pack, strips, unpack
 from sebody.kernels.packed_couplings import pack_couplings
 from sebody.kernels.packed_products import (
     add_couplings,
@@ -114,6 +114,34 @@ def test_products_and_sums(shape, filled):
     expected = np.einsum("k,kij->ij", factors, matrices)
     assert np.abs(sums[:columns, :rows].T - expected).max() < 1e-13
     assert not sums[:, height:].any()
+
+
+@pytest.mark.parametrize("N, apart", [(9, False), (22, True), (61, True)])
+@pytest.mark.parametrize("symmetric", [False, True])
+def test_diagonals(N, apart, symmetric):
+    """As of normal modes behind two boundary coordinates; the first matrix is full.
+
+    Strips hold them where there are few; else nothing but the coordinates' rows and columns.
+    """
+    random, height = np.random.default_rng(N), whole_vectors(N)
+    matrices = random.normal(size=(2, N, N))
+    matrices += matrices.transpose(0, 2, 1)
+    matrices[1, 2:, 2:] = np.diag(random.normal(size=N - 2))
+    row = pack(matrices, matrices.shape, symmetric)
+    assert np.array_equal(unpack(row, matrices.shape), matrices)
+    found = list(diagonals_of(row))
+    assert [(one.matrix, one.place) for one in found] == [(1, height)] * apart
+    if apart:
+        assert np.array_equal(found[0].numbers[:N], np.diag(matrices[1]))
+        assert not any(use.matrix == 1 and strip.row >= LANES and use.place >= height + LANES
+                       and strip.first >= LANES for strip in strips(row) for use in strip.uses)
+    x, y, of_x, of_y = random.normal(size=(4, 2 * height))
+    of_both(row, x, y, of_x, of_y, 2 * height)
+    for given, out in ((x, of_x), (y, of_y)):
+        assert np.abs(out.reshape(2, -1)[:, :N] - matrices @ given[:N]).max() < 1e-13 * N
+    sums, factors = np.zeros((height, height)), random.normal(size=2)
+    summed(row, factors, sums.ravel(), height)
+    assert np.abs(sums[:N, :N].T - np.tensordot(factors, matrices, 1)).max() < 1e-13
 
 
 @pytest.mark.parametrize("N, filled, zeros, many", [

@@ -18,7 +18,7 @@ from sebody.contract.layout import (
     TRANSPOSED,
     VELOCITY,
 )
-from sebody.kernels import packed
+from sebody.kernels import packed_groups
 from sebody.kernels.loader import load
 from sebody.verify import check
 from sebody.verify.check import definitions, elements, products, states, superelements
@@ -74,7 +74,7 @@ def test_check_notices_wrong_products(criterion, monkeypatch):
                                   "products_superelement_f2_converged_mean_floating_field"])
 def test_entries_that_are_used_twice(name, monkeypatch):
     """As those of large bodies are: as they stand, and transposed."""
-    monkeypatch.setattr(packed, "MANY", 1)
+    monkeypatch.setattr(packed_groups, "MANY", 1)
     rows = check.check_kernels([name])
     assert all(row.passed for row in rows), check.summary(rows)
 

@@ -5,7 +5,7 @@ kernels call for lanes.
 """
 
 from sebody.engine.lanes import links, load_amplitudes, prediction
-from sebody.kernels.lanes import frame_search, packed_products, products, rotations
+from sebody.kernels.lanes import blocks, frame_search, packed_products, products, rotations
 
-__all__ = ["frame_search", "links", "load_amplitudes", "packed_products", "prediction", "products",
-           "rotations"]
+__all__ = ["blocks", "frame_search", "links", "load_amplitudes", "packed_products", "prediction",
+           "products", "rotations"]

@@ -9,20 +9,12 @@ from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR
 from sebody.contract.counts import LANES
-from sebody.kernels import packed_strips
+from sebody.kernels import packed_strips, packed_sums
 from sebody.kernels.instructions import WORD, call, in_lanes, short_loop, whole_vectors
 from sebody.kernels.lanes.products import NOTHING, across, behind, fused, read, write
 from sebody.kernels.lanes.straight import AT_ADDRESS, AT_LANES, AT_MORE, MOST_GROUPS
-from sebody.kernels.packed import (
-    BEHIND,
-    BOTH,
-    COUPLED,
-    HEAD,
-    MIRRORED,
-    MULTIPLE,
-    ONCE,
-    PRODUCTS,
-)
+from sebody.kernels.packed import BEHIND, PRODUCTS
+from sebody.kernels.packed_groups import BOTH, COUPLED, DIAGONAL, MIRRORED, MULTIPLE, ONCE
 from sebody.kernels.packed_strips import Groups
 
 
@@ -147,8 +139,14 @@ def _add_strips(builder, matrices, x, y, out):
     def multiple(groups):
         with groups.vectors() as (factor, place, other):
             write(builder, builder.fmul(factor, read(builder, out, other)), out, place)
+
+    def diagonal(groups):
+        with groups.vectors() as (factor, place, other):
+            total = fused(builder, read(builder, out, place), factor, read(builder, x, other))
+            write(builder, total, out, place)
     _Groups(builder, matrices).each({
-        ONCE: once, BOTH: both, MIRRORED: twice([x]), COUPLED: twice([x, y]), MULTIPLE: multiple})
+        ONCE: once, BOTH: both, MIRRORED: twice([x]), COUPLED: twice([x, y]), MULTIPLE: multiple,
+        DIAGONAL: diagonal})
 
 
 def _add_rows(groups, strip, given, out):
@@ -190,14 +188,14 @@ def _add_twice(groups, forward, out):
             write(builder, fused(builder, read(builder, out, place), entry, factor), out, place)
 
 
-@in_lanes(packed_strips.write_sum)
+@in_lanes(packed_sums.write_sum)
 def sum_packed(builder, matrices, factors, out, height):
     """Of `add_packed`."""
     _sum_strips(builder, matrices, lambda _, matrix, lane: read(builder, factors, matrix), out, out,
                 height)
 
 
-@in_lanes(packed_strips.write_sum_of_couplings)
+@in_lanes(packed_sums.write_sum_of_couplings)
 def sum_couplings(builder, matrices, factors, scales, of_x, of_y, products, size, height):
     """Of `add_couplings`."""
     with short_loop(builder, WORD(0), products) as k:
@@ -220,14 +218,15 @@ def _sum_strips(builder, matrices, scale, of_x, of_y, height):
     """Of every strip, or what mirrors it, `scale` knows the place, the matrix and the lane."""
     def once(groups):
         with short_loop(builder, WORD(0), groups.strips) as strip:
-            place, matrix, row = (groups.head(k, strip) for k in range(HEAD))
+            place, (matrix, row) = groups.head(0, strip), groups.matrix_and_row(0, strip)
             _sum_entries(groups, strip, row, [(scale, place, matrix, groups.chosen(of_x, of_y))],
                          [], height)
 
     def both(groups):
         behind = [groups.head(k) for k in range(2)]
         with short_loop(builder, WORD(0), groups.strips) as strip:
-            place, matrix, row = (groups.head(BEHIND + k, strip) for k in range(HEAD))
+            place = groups.head(BEHIND, strip)
+            matrix, row = groups.matrix_and_row(BEHIND, strip)
             _sum_entries(groups, strip, row, [
                 (scale, place, matrix, of_x),
                 (scale, builder.add(place, behind[0]), builder.add(matrix, behind[1]), of_y)],
@@ -244,8 +243,15 @@ def _sum_strips(builder, matrices, scale, of_x, of_y, height):
                          for k, out in enumerate(forward)]
                 _sum_entries(groups, strip, row, given, across, height)
         return add
+
+    def diagonal(groups):
+        number, step = groups.head(0), builder.add(height, WORD(1))
+        with groups.vectors() as (entry, place, k):
+            factor, to = scale(place, number, WORD(0)), builder.mul(k, step)
+            write(builder, fused(builder, read(builder, of_x, to), entry, factor), of_x, to)
     _Groups(builder, matrices).each({
-        ONCE: once, BOTH: both, MIRRORED: twice([of_x]), COUPLED: twice([of_x, of_y])})
+        ONCE: once, BOTH: both, MIRRORED: twice([of_x]), COUPLED: twice([of_x, of_y]),
+        DIAGONAL: diagonal})
 
 
 def _sum_entries(groups, strip, row, given, across, height):

@@ -9,7 +9,6 @@ from functools import reduce
 from llvmlite import ir
 
 from sebody.compiler.inside.lanes import VECTOR, same
-from sebody.contract.counts import LANES
 from sebody.kernels import coordinates, dense
 from sebody.kernels.instructions import (
     WORD,
@@ -167,37 +166,6 @@ def dots(builder, A, x, out, rows, columns, height):
 def add_dots(builder, A, x, out, rows, columns, height):
     """Of `add_rows_times`."""
     _by_columns(builder, A, x, out, rows, columns, height, True)
-
-
-def _subtracted(builder, total, a, b):
-    return builder.fsub(total, builder.fmul(a, b, flags=("contract",)), flags=("contract",))
-
-
-@in_lanes(dense.write_subtract_product)
-def subtract_product(builder, C, A, B):
-    """Of `subtract_product`."""
-    with short_loop(builder, WORD(0), WORD(LANES * LANES), LANES) as column:
-        factors = [read(builder, B, behind(builder, column, k)) for k in range(LANES)]
-        for i in range(LANES):
-            total = read(builder, C, behind(builder, column, i))
-            for k, factor in enumerate(factors):
-                total = _subtracted(builder, total, read(builder, A, WORD(LANES * k + i)), factor)
-            write(builder, total, C, behind(builder, column, i))
-
-
-@in_lanes(dense.write_subtract_blocks_times)
-def subtract_blocks_times(builder, y, rows, A, x, first, end):
-    """Of `subtract_blocks_times`."""
-    factors = [read(builder, x, WORD(k)) for k in range(LANES)]
-    with short_loop(builder, first, end) as p:
-        place = builder.mul(builder.load(builder.gep(rows, [p])), WORD(LANES))
-        begin = builder.mul(p, WORD(LANES * LANES))
-        for i in range(LANES):
-            total = read(builder, y, behind(builder, place, i))
-            for k, factor in enumerate(factors):
-                entry = read(builder, A, behind(builder, begin, LANES * k + i))
-                total = _subtracted(builder, total, entry, factor)
-            write(builder, total, y, behind(builder, place, i))
 
 
 @in_lanes(dense.write_more_columns)

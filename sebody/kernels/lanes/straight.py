@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.instructions import WORD, short_loop
-from sebody.kernels.packed import multiples, strips
+from sebody.kernels.packed import diagonals_of, multiples, strips
 
 # lanes of the first number of a row that have the addresses of its straight code, where there is
 # some: of what writes products, and of what adds to them; the number of groups stands in all others
@@ -47,6 +47,10 @@ def entries_of(row: NDArray, varied: NDArray) -> Entries:
             for use in uses:
                 column, to = (below + i, k) if use.transposed else (first + k, i)
                 found.append((place, use.vector, column, use.place + to, value))
+    for one in diagonals_of(row):
+        for i in np.flatnonzero(one.numbers).tolist():
+            value = None if varied[one.at + i] else float(row[one.at + i])
+            found.append((one.at + i, 0, i, one.place + i, value))
     sums = {entry[3] for entry in found}
     for one in multiples(row):
         for i in np.flatnonzero(one.factors).tolist():
