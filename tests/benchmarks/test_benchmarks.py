@@ -68,6 +68,15 @@ def test_resultants_that_are_left_out_are_weighed(monkeypatch, capsys):
     assert min(row[f"cost of {one}"] for one in ("all", "kept", "none")) > 0.0
 
 
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+def test_slender_bodies_are_compared_with_beams(capsys):
+    """A bow with two interfaces, 6e-3 off without resultants of its internal modes."""
+    imported("bench_slender").main(["--json", "--bodies", "1"])
+    found = json.loads(capsys.readouterr().out)["0"]
+    assert 0.0 < found["default"] < 2e-3 < found["no internal resultants"] < 1.0
+    assert found["no stiffening"] > 0.0
+
+
 def test_set_ups_are_timed_by_scene(capsys):
     bench = imported("bench_setup")
     bench.main(["--json"], times=1)
