@@ -23,6 +23,21 @@ LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h
            "Ghat": ("resultants", "n", "n"), "origin": ("D",)}
 
 
+def turned_resultants(lam: NDArray, E: NDArray, Ghat: NDArray, turn: NDArray
+                      ) -> tuple[NDArray, NDArray, NDArray]:
+    """lam, E and Ghat of other resultants, whose squares make the same strain energy.
+
+    Parameters
+    ----------
+    turn : (n_e, m)
+        Orthonormal columns: what the others have of each resultant of unit strain energy.
+    """
+    roots = np.sqrt(lam)
+    others = (turn**2).T @ lam
+    return (others, (E * roots) @ turn / np.sqrt(others),
+            np.einsum("eij,ef->fij", Ghat / roots[:, None, None], turn * np.sqrt(others)))
+
+
 @dataclass(frozen=True, eq=False)
 class InertiaInvariants:
     """Integrals of the body in its FE axes, about a point near it.

@@ -20,7 +20,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import coordinate_names, unit_scale
-from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.invariants import InertiaInvariants, turned_resultants
 from sebody.reduction.plane_recovery import planar_recovery
 
 # Couplings below this, relative to what they couple, are rounding: matrices from files have some
@@ -216,10 +216,7 @@ def _planar_invariants(i: InertiaInvariants, body: ReducedBody, every: _Basis,
     back, slaved = _load_modes(body, i, mass, signs)
     whole = block_diag(np.eye(n), slaved.turn)
     resultants = _resultants(i, body.stiffness, signs)
-    lam = (resultants.turn**2).T @ i.lam
-    E = (i.E * np.sqrt(i.lam)) @ resultants.turn / np.sqrt(lam)
-    Ghat = np.einsum("eij,ef->fij", i.Ghat / np.sqrt(i.lam)[:, None, None],
-                     resultants.turn * np.sqrt(lam))
+    lam, E, Ghat = turned_resultants(i.lam, i.E, i.Ghat, resultants.turn)
     full = replace(
         i, S1=i.S1 @ whole, g=i.g @ whole, h=i.h @ whole, K=whole.T @ i.K @ whole,
         J2=whole.T @ i.J2 @ whole, Mbar=whole.T @ i.Mbar @ whole,

@@ -114,7 +114,9 @@ class GeometricStiffness:
         self._lowest = max(self._count, _LOWEST)                # vibrations that count
         momenta = mass @ rigid
         relative = mass - momenta @ np.linalg.pinv(rigid.T @ momenta) @ momenta.T
-        self._flexible = self._elastic.T @ relative @ self._elastic     # of the free body's mass
+        # of the free body: inverse squares of frequencies, vibrations of unit strain energy
+        self._inverse, self._vibrations = np.linalg.eigh(
+            self._elastic.T @ relative @ self._elastic)
 
     def stiffening(self, loads: NDArray, answers: NDArray,
                    mass: Callable[[NDArray], NDArray]) -> Stiffening:
@@ -164,7 +166,7 @@ class GeometricStiffness:
 
     def _divided(self, of_motions: NDArray, shapes: NDArray) -> tuple[NDArray, NDArray]:
         """Turns of the internal modes: those that stretch, and what load modes leave out."""
-        vibrations = np.linalg.eigh(self._flexible)[1][:, -self._lowest:]
+        vibrations = self._vibrations[:, -self._lowest:]
         reached = _LARGEST_MOTION / self._largest(shapes @ vibrations)
         amplitudes = vibrations * np.minimum(reached, np.sqrt(_SOFT) * reached.min(initial=np.inf))
         low, modes = self._elastic @ vibrations, shapes[:, self._count:]
@@ -207,8 +209,7 @@ class GeometricStiffness:
         close that bending and twist of nearly one frequency change each other more, and the more
         modes a body has the more often; but such short waves do not change what the body does.
         """
-        inverse, shapes = np.linalg.eigh(self._flexible)
-        matrix = shapes.T @ relative @ shapes
+        inverse, matrix = self._inverse, self._vibrations.T @ relative @ self._vibrations
         equal = np.abs(inverse[:, None] - inverse) <= _REPEATED * np.maximum.outer(inverse, inverse)
         first = np.abs(np.linalg.eigvalsh(np.where(equal, matrix, 0.0))).max()
         lowest, most = slice(-self._lowest, None), 0.0

@@ -9,7 +9,7 @@ from sebody import inputs
 from sebody.errors import InputError
 from sebody.fem.stress import StressModes
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.invariants import InertiaInvariants, turned_resultants
 from sebody.reduction.recovery import Recovery
 
 _NO_SHARE = 1e-6    # of a resultant in the modes that stay: what stays without it is rounding
@@ -84,19 +84,17 @@ def _truncated_resultants(i: InertiaInvariants, stiffness: NDArray, size: int
     first, cut = slice(0, size), i.E[size:].any(axis=0)
     if not cut.any():
         return i.lam, i.E[first], i.Ghat[:, first, first]
-    roots, diagonal = np.sqrt(i.lam[cut]), np.diag(stiffness)[first]
-    scale = np.where(diagonal > 0, 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
-    forces = scale[:, None] * i.E[first, cut] * roots
+    diagonal = np.diag(stiffness)[first]
+    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, np.inf))
+    forces = scale[:, None] * i.E[first, cut] * np.sqrt(i.lam[cut])
     inverse = np.linalg.pinv(scale[:, None] * stiffness[first, first] * scale, rcond=1e-12,
                              hermitian=True)
     shares, turn = np.linalg.eigh(forces.T @ inverse @ forces)
     shares, turn = shares[shares > _NO_SHARE], turn[:, shares > _NO_SHARE]
-    lam = (turn**2).T @ i.lam[cut]
-    E = i.E[first, cut] @ (roots[:, None] * turn / np.sqrt(shares * lam))
-    Ghat = np.einsum("ef,eij->fij", turn / roots[:, None] * np.sqrt(shares * lam),
-                     i.Ghat[cut, first, first])
-    return (np.concatenate([i.lam[~cut], lam]), np.hstack([i.E[first, ~cut], E]),
-            np.concatenate([i.Ghat[~cut, first, first], Ghat]))
+    lam, E, Ghat = turned_resultants(i.lam[cut], i.E[first, cut], i.Ghat[cut, first, first], turn)
+    less = np.sqrt(shares)
+    return (np.concatenate([i.lam[~cut], lam]), np.hstack([i.E[first, ~cut], E / less]),
+            np.concatenate([i.Ghat[~cut, first, first], less[:, None, None] * Ghat]))
 
 
 def _truncated_recovery(body: ReducedBody, size: int) -> Recovery:

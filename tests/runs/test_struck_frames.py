@@ -60,8 +60,8 @@ def test_energy_error_falls_with_the_square_of_the_step():
 def test_path_is_that_of_nonlinear_beams(struck, t_end, error):
     """The T is bent by 0.2 rad; frames on rotations are 1.4e-2 off here, and grow from there.
 
-    9.3e-3 are left of the T, 8.6e-3 without resultants of its internal modes, which its bars bent
-    a little want: what is of third order is left in both.
+    The T is off by 9.3e-3, and by 8.6e-3 without resultants of internal modes: without those, a T
+    with bars that are bent a little is off by 0.05.
 
     The ring is symmetric; when its inertia lost all terms of deformation by this it was 6e-3 off.
     """
@@ -74,9 +74,9 @@ def test_path_is_that_of_nonlinear_beams(struck, t_end, error):
 
 @pytest.mark.parametrize(("rise", "modes"), [(1e-3, 12), (3e-3, 12), (3e-2, 24)])
 def test_crooked_arms_change_the_error_little(rise, modes):
-    """Radii of gyration are 2.8 mm. Without resultants of internal modes they are 0.05 to 0.1 off.
+    """Without resultants of internal modes paths are 0.05 to 0.1 off; radii of gyration are 2.8 mm.
 
-    The less a bow is a slight one the more modes its arms want: a bow of 10 mm takes more than 12.
+    Larger bows want more modes: 12 are not enough for a bow of 10 mm.
     """
     straight = t_frame(modes)
     points = np.array([[0, 0, 0], [1, 0, 0], [-1, 0, 0], [0, -1, 0], [0.5, rise, 0.5 * rise],
