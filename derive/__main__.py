@@ -17,6 +17,7 @@ from functools import partial
 from pathlib import Path
 
 import sebody.generated
+from sebody.basics.files import replacing
 from sebody.contract.names import PREFIXES, motion_name
 from sebody.contract.names import PRODUCTS as OF_PRODUCTS
 from sebody.derive.compiler import Products, Variant, compile_kernel, file_name
@@ -25,7 +26,6 @@ from sebody.derive.kernels.manifest import ELEMENTS, PRODUCTS, SUPERELEMENTS
 from sebody.derive.kernels.options import frame_conditions, frame_traits, inertia_traits
 from sebody.derive.names import kernel_of
 from sebody.derive.printing.numba.options import options_text
-from sebody.files import replacing
 from sebody.kernels.loader import find, user_directory
 
 SECONDS = {Variant: 2.5, str: 0.4, Products: 2.5}       # to derive a kernel

@@ -11,7 +11,8 @@ from itertools import combinations, product
 
 import numpy as np
 
-from sebody import Model, inputs
+from sebody import Model
+from sebody.basics import inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION

@@ -10,7 +10,8 @@ stays the same.
 
 import numpy as np
 
-from sebody import Model, inputs
+from sebody import Model
+from sebody.basics import inputs
 from sebody.fem import Section, straight_beam
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes.scene import Scene

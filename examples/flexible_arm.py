@@ -10,8 +10,9 @@ leaves no vibration. With ``controller=pd`` the hub is as fast and the tip goes 
 
 import numpy as np
 
-from sebody import Model, Simulation, inputs
+from sebody import Model, Simulation
 from sebody.analysis import state_space
+from sebody.basics import inputs
 from sebody.control import pid, state_feedback
 from sebody.fem import rectangle
 from sebody.scenes.regulators import regulator

@@ -7,7 +7,8 @@ Look at ``B0.position.x:y``: the rockers go round, and twice in each turn all ba
 where the linkage has no unique motion; ``energy`` passes these places unchanged.
 """
 
-from sebody import Model, inputs
+from sebody import Model
+from sebody.basics import inputs
 from sebody.scenes.scene import Scene
 
 GRAVITY = (0.0, -9.81)

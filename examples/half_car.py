@@ -12,7 +12,8 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from sebody import Model, inputs, with_corners
+from sebody import Model, with_corners
+from sebody.basics import inputs
 from sebody.control import state_feedback
 from sebody.scenes.scene import Scene
 

@@ -10,8 +10,9 @@ where it is fastest. Bodies of solid elements have stresses: colour the page by 
 import numpy as np
 from scipy.linalg import eigh
 
-from sebody import Model, inputs, rest_to_rest
-from sebody.errors import InputError
+from sebody import Model, rest_to_rest
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem import hexahedral_block
 from sebody.io import load_body
 from sebody.reduction import ReducedBody, RigidFace, craig_bampton

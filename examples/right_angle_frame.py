@@ -8,7 +8,8 @@ so the corner twists, and the frame turns about its hinge while it vibrates.
 
 import numpy as np
 
-from sebody import Model, inputs
+from sebody import Model
+from sebody.basics import inputs
 from sebody.fem import frame
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION

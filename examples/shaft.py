@@ -9,7 +9,8 @@ position, and turns the whole shaft, whose end is bent by the push and comes bac
 
 import numpy as np
 
-from sebody import Model, inputs
+from sebody import Model
+from sebody.basics import inputs
 from sebody.fem import straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes.hinged_beam import SECTION

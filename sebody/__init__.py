@@ -2,10 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-from sebody.lazy import load_on_demand
+from sebody.basics.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from sebody.errors import (
+    from sebody.basics.errors import (
         InputError,
         Interrupted,
         LimitWarning,
@@ -13,6 +13,7 @@ if TYPE_CHECKING:
         SimulationError,
         WriteError,
     )
+    from sebody.basics.version import __version__ as __version__
     from sebody.model.histories import with_corners
     from sebody.model.model import Model
     from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from sebody.runs.schemes import generalized_alpha, hht
     from sebody.runs.simulation import Simulation, simulate
     from sebody.runs.tolerance import Tolerance
-    from sebody.version import __version__ as __version__
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
            "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",

@@ -8,9 +8,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from sebody.basics.spelling import unknown
 from sebody.contract.names import PREFIXES, PRODUCTS
 from sebody.kernels.loader import user_directory
-from sebody.spelling import unknown
 
 
 class Kernel(NamedTuple):

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from sebody import InputError, WriteError
-from sebody.files import check_target, replacing
-from sebody.files.members import Header, Member, Table
+from sebody.basics.files import check_target, replacing
+from sebody.basics.files.members import Header, Member, Table
 
 
 def parts(folder):

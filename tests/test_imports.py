@@ -13,22 +13,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 FOLDERS = {"sebody": "sebody", "derive": "sebody.derive", "generated": "sebody.generated",
            "examples": "sebody.scenes"}
-# every folder, lowest first, and which others its files may import, besides all of OPEN
-OPEN = {"errors", "inputs", "memory", "files", "units", "lazy", "collector", "spelling", "tabular",
-        "version", "vectors"}
+# every folder, lowest first, and which others its files may import, besides the helpers in basics
+OPEN = {"basics"}
 COMPILED = {"contract", "compiler", "kernels", "generated"}
 MAY_IMPORT = {
-    "errors": set(),
-    "inputs": set(),
-    "memory": set(),
-    "files": set(),
-    "units": set(),
-    "lazy": set(),
-    "collector": set(),
-    "spelling": set(),
-    "tabular": set(),
-    "version": set(),
-    "vectors": set(),
+    "basics": set(),
     "contract": set(),
     "compiler": {"contract"},
     "kernels": {"contract", "compiler"},
@@ -37,27 +26,25 @@ MAY_IMPORT = {
     "fem": set(),
     "reduction": {"fem"},
     "io": {"fem", "reduction"},
-    "control": set(),
-    "model": {*COMPILED, "fem", "reduction", "io", "control"},     # of generated the options alone
+    "model": {*COMPILED, "fem", "reduction", "io"},         # of generated the options alone
+    "control": {"model"},           # its names
     "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly"},
     "pictures": {"fem", "reduction", "model", "results"},
     "names of results": {"results", "pictures"},
-    "limits": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
-    "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "results", "limits"},
-    "small_motion": {*COMPILED, "engine", "model", "assembly", "results", "pictures", "limits",
-                     "runs"},
+    "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "results"},
+    "small_motion": {*COMPILED, "engine", "model", "assembly", "results", "pictures", "runs"},
     "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "results",
-                "pictures", "limits", "runs", "small_motion"},
+                "pictures", "runs", "small_motion"},
     "gradients": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
-                  "pictures", "limits", "runs", "small_motion", "explore"},
+                  "pictures", "runs", "small_motion", "explore"},
     # names of other folders
-    "analysis": {"limits", "runs", "small_motion", "explore", "gradients"},
+    "analysis": {"runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
-    "scenes": {"sebody", "fem", "reduction", "io", "results", "pictures", "control", "analysis"},
+    "scenes": {"sebody", "control", "fem", "reduction", "io", "results", "pictures", "analysis"},
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "results",
-               "pictures", "limits", "runs", "small_motion", "explore", "gradients", "scenes",
+               "pictures", "runs", "small_motion", "explore", "gradients", "scenes",
                "catalogue"},
     "export": {*COMPILED, "engine", "model", "assembly", "results", "runs"},
     "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "pictures", "runs",
@@ -67,10 +54,7 @@ MAY_IMPORT = {
 # offers names of a folder above its own, which are loaded when they are asked for
 APART = {"sebody.results": "names of results"}
 RUNTIME = {"numpy", "scipy", "numba"}
-PACKAGES = {"errors": set(), "inputs": {"numpy"}, "tabular": {"numpy"}, "memory": set(),
-            "vectors": {"numpy"},
-            "units": set(), "files": {"numpy"}, "lazy": set(), "spelling": set(), "version": set(),
-            "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
+PACKAGES = {"basics": {"numpy"}, "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
             "export": RUNTIME | {"llvmlite"},
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
@@ -81,7 +65,7 @@ FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by folder, and what they may import
 OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
-          "results/hdf5": {"h5py"}, "files/hdf5": {"h5py"},
+          "results/hdf5": {"h5py"}, "basics/hdf5": {"h5py"},
           "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
           "small_motion/state_space": {"control"},

@@ -19,12 +19,12 @@ from sebody.analysis import (
     modes,
     vibrations,
 )
+from sebody.basics.tabular import table, text
 from sebody.fem import rectangle, straight_beam, tube
 from sebody.io.body_file import BodyFile
 from sebody.model.summary import unknowns
 from sebody.reduction import component_modes, craig_bampton
 from sebody.scenes import four_bar, hinged_beam, slider_crank
-from sebody.tabular import table, text
 
 SECTION = rectangle(0.1, 0.05, youngs_modulus=2e9, poisson_ratio=0.3, density=1000.0)
 

@@ -9,14 +9,12 @@ import sebody
 from sebody.cli.entry import COMMANDS
 
 LIBRARIES = {"numpy", "scipy", "numba", "sympy", "matplotlib", "pandas", "h5py"}
-COMMAND_LINE = {"sebody", "sebody.collector", "sebody.lazy", "sebody.errors", "sebody.cli"}
-MODEL_AND_RUN = {"sebody.files", "sebody.inputs", "sebody.contract", "sebody.compiler",
-                 "sebody.kernels", "sebody.generated",
-                 "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.control",
-                 "sebody.model",
-                 "sebody.assembly", "sebody.results", "sebody.limits", "sebody.runs",
-                 "sebody.spelling",
-                 "sebody.tabular", "sebody.memory", "sebody.units", "sebody.vectors"}
+COMMAND_LINE = {"sebody", "sebody.basics", "sebody.cli"}
+# of basics, what the command line loads to show its help
+BASICS = {"sebody.basics.collector", "sebody.basics.lazy", "sebody.basics.errors"}
+MODEL_AND_RUN = {"sebody.contract", "sebody.compiler", "sebody.kernels", "sebody.generated",
+                 "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.model",
+                 "sebody.assembly", "sebody.results", "sebody.runs"}
 # parts of rooms that neither a model nor a run needs
 UNUSED = {"sebody.explore.advice", "sebody.explore.ensembles", "sebody.small_motion.frequency",
           "sebody.small_motion.campbell", "sebody.runs.statics", "sebody.pictures.animation",
@@ -47,17 +45,23 @@ def command(*arguments: str) -> str:
 
 
 def test_import_of_the_package_loads_nothing():
-    assert loaded("import sebody") == {"sebody", "sebody.collector", "sebody.lazy"}
+    assert loaded("import sebody") == {"sebody", "sebody.basics", "sebody.basics.collector",
+                                       "sebody.basics.lazy"}
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["run", "--help"], ["sweep", "--help"]])
 def test_help_loads_no_library(arguments):
-    assert upper(loaded(command(*arguments))) <= COMMAND_LINE
+    names = loaded(command(*arguments))
+    assert upper(names) <= COMMAND_LINE
+    assert {name for name in names if name.startswith("sebody.basics.")} <= BASICS
 
 
 def test_the_version_is_printed(capsys):
     code = command("--version")
-    assert upper(loaded(code)) <= COMMAND_LINE | {"sebody.version"}
+    names = loaded(code)
+    assert upper(names) <= COMMAND_LINE
+    assert {name for name in names
+            if name.startswith("sebody.basics.")} <= BASICS | {"sebody.basics.version"}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == f"sebody {sebody.__version__}\n"
     assert sebody.__version__[0].isdigit()
@@ -67,7 +71,7 @@ def test_a_model_and_a_run_load_what_they_need():
     """The names of README's example, and the run of its first command."""
     names = loaded("from sebody import Model, simulate")
     assert upper({name for name in names if name.startswith("sebody")}) <= (
-        COMMAND_LINE | MODEL_AND_RUN | {"sebody.version"}) - {"sebody.cli"}
+        COMMAND_LINE | MODEL_AND_RUN) - {"sebody.cli"}
     run = loaded(command("run", "hinged-beam", "--t-end", "0.05"))
     for found in (names, run):
         assert upper({name for name in found if name.startswith("scipy.")}) <= SCIPY

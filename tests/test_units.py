@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, simulate
+from sebody.basics.units import common_units, parsed_units
 from sebody.fem import Section, straight_beam
 from sebody.fem.materials import Material, doubt, doubts
 from sebody.io import save_body
 from sebody.pictures.curves import panels
 from sebody.reduction import craig_bampton
 from sebody.results import plot
-from sebody.units import common_units, parsed_units
 
 
 @pytest.mark.parametrize(("text", "whole", "pressure", "force", "mass"), [

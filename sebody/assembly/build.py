@@ -13,13 +13,13 @@ from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
 from sebody.assembly.ports import port_arrays
 from sebody.assembly.structure import Structure, indices
+from sebody.basics.errors import InputError
 from sebody.contract.counts import LANES, scratch_size
 from sebody.contract.law_row import scratch
 from sebody.contract.layout import AT_CONSTANTS
 from sebody.engine.links import Links
 from sebody.engine.mailbox import Shared
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism

@@ -10,6 +10,7 @@ from types import ModuleType
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.numbering import Numbering
+from sebody.basics.errors import InputError
 from sebody.contract.counts import (
     MOST_SLAVED,
     Counts,
@@ -22,7 +23,6 @@ from sebody.contract.counts import (
 )
 from sebody.contract.layout import INDEX, ContractError, Row
 from sebody.contract.names import IN_PLANE, element_name
-from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import find
 from sebody.kernels.packed import move_to_cache_lines

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering, record_counts
+from sebody.basics.errors import InputError
 from sebody.contract.law_row import (
     ALONG,
     ANGLE,
@@ -23,7 +24,6 @@ from sebody.contract.law_row import (
     TURNED,
 )
 from sebody.contract.layout import RECORD
-from sebody.errors import InputError
 from sebody.model.control_parts import Controller
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, LawParts

@@ -3,12 +3,12 @@
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import TANGENT
 from sebody.engine.evaluate import assemble
 from sebody.engine.matrix import sum_matrices
 from sebody.engine.state import REASONS, State
 from sebody.engine.system import System
-from sebody.errors import InputError
 
 
 def evaluate(system: System, state: State, of_bodies: int, of_others: int, what: str) -> None:

@@ -14,8 +14,8 @@ from sebody.assembly.body_axes import (
     stiff_of,
     without_rounding,
 )
+from sebody.basics.errors import InputError
 from sebody.contract.counts import Counts, first_rotation
-from sebody.errors import InputError
 from sebody.generated.options import CONDITIONS
 from sebody.kernels.packed import pack
 from sebody.kernels.packed_couplings import pack_couplings

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from itertools import accumulate
 from typing import NamedTuple
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import INPUT_NUMBERS
-from sebody.errors import InputError
 from sebody.kernels.loader import element_kernel
 from sebody.model.control_order import actuators, sampled, signals
 from sebody.model.control_parts import Controller, Sensor

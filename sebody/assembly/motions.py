@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from sebody.assembly.body_constants import frame_constants
 from sebody.assembly.contracts import constants_row, frame_counts, index_row
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.basics.errors import InputError
 from sebody.contract.counts import Counts, scratch_size
 from sebody.contract.layout import MOTION
 from sebody.contract.names import motion_name
-from sebody.errors import InputError
 from sebody.kernels.loader import derive_command, load
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism

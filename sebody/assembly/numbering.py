@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from sebody.assembly.elimination_order import elimination_order, parents
 from sebody.assembly.memory_map import MemoryMap, memory_map
 from sebody.assembly.ports import number_ports
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
 from sebody.model.time_functions import TimeFunction

@@ -29,8 +29,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, print, write and draw."""
-    from sebody import inputs
-    from sebody.files import check_target
+    from sebody.basics import inputs
+    from sebody.basics.files import check_target
     from sebody.verify import chart
 
     check_picture(options.output)

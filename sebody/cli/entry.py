@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any, TextIO
 
+from sebody.basics.errors import InputError, SebodyError
 from sebody.cli import (
     advise,
     animate,
@@ -27,7 +28,6 @@ from sebody.cli import (
     sweep,
     warm,
 )
-from sebody.errors import InputError, SebodyError
 
 # in the order of the help
 COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, export, inspect,

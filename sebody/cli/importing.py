@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sebody.basics.errors import InputError
 from sebody.cli.number_arguments import real, whole
-from sebody.errors import InputError
 
 if TYPE_CHECKING:
     from sebody.reduction import Accuracy
@@ -53,13 +53,13 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Read, reduce, write, and say what was found."""
-    from sebody.files import check_target
+    from sebody.basics.files import check_target
+    from sebody.basics.units import parsed_units
     from sebody.io.body_file import TARGET, lean, write_body_file
     from sebody.io.importing import Wanted, imported
     from sebody.io.interfaces import parsed
     from sebody.io.registry import naming, read_source
     from sebody.reduction.watch import Terminal
-    from sebody.units import parsed_units
 
     check_target(options.output, *TARGET)
     wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,

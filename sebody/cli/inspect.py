@@ -4,8 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from sebody.basics.errors import InputError
 from sebody.cli.scene_arguments import check_distinct, check_picture
-from sebody.errors import InputError
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -24,8 +24,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Inspect, perhaps repair; 1 if the body has a defect."""
+    from sebody.basics.files import check_target
     from sebody.explore import inspection
-    from sebody.files import check_target
     from sebody.io.body_file import TARGET, read_body_file, write_body_file
 
     check_picture(options.output)

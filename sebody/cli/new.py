@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from shlex import quote
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 NAME = "FILE.py"        # in the text of the scene that is copied
 
@@ -19,7 +19,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 def run(options: argparse.Namespace) -> int:
     """Write the file and say what can be done with it; an older file is left alone."""
     from sebody import scenes
-    from sebody.files import check_target, replacing
+    from sebody.basics.files import check_target, replacing
 
     path = check_target(options.file, "scene", (".py",))
     if path.exists():

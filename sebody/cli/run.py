@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from sebody.basics.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 from sebody.cli import interrupts
 from sebody.cli.number_arguments import real, whole
 from sebody.cli.scene_arguments import build_scene, check_distinct, check_picture
-from sebody.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
@@ -178,7 +178,7 @@ def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulatio
 
 def _check(options: argparse.Namespace, scene: "Scene") -> None:
     """Refuse before the run what cannot be written, and options that contradict others."""
-    from sebody.files import check_target
+    from sebody.basics.files import check_target
     from sebody.results.saving import check_output
     from sebody.runs.restart import TARGET
 

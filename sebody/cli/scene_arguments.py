@@ -8,9 +8,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from sebody.basics.collector import without_collector
+from sebody.basics.errors import InputError
 from sebody.cli import scene_files
-from sebody.collector import without_collector
-from sebody.errors import InputError
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
@@ -66,7 +66,8 @@ def checked_scene(scene: object, name: str) -> "Scene":
     InputError
         It is none.
     """
-    from sebody import Model, inputs
+    from sebody import Model
+    from sebody.basics import inputs
     from sebody.scenes.scene import Scene
 
     what = f"what build of {name} returned"

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 MODULE = "sebody_scene_file"        # name of the module that a file becomes
 REMEDY = "write 'def build() -> Scene' as in examples/hinged_beam.py"
@@ -26,7 +26,7 @@ def load(path: str) -> ModuleType:
     InputError
         The file cannot be read, is no Python, raises an error, or has no function `build`.
     """
-    from sebody.files.reading import content
+    from sebody.basics.files.reading import content
 
     source = content(path, "scene file", "give the name of a scene or the path of a file",
                      (".py",))

@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sebody.basics.errors import InputError
 from sebody.cli import interrupts
 from sebody.cli.number_arguments import real, whole
 from sebody.cli.scene_arguments import build_scene, check_picture, given_arguments, source
-from sebody.errors import InputError
 
 if TYPE_CHECKING:
     from sebody.explore.ensembles import Output
@@ -167,7 +167,7 @@ def _written(table: "Table", stem: Path) -> list[str]:
 
 def _frame(frame, stem: Path) -> Path:
     """A Parquet file where pandas can write one, else CSV."""
-    from sebody.files import replacing
+    from sebody.basics.files import replacing
 
     try:
         path = _beside(stem, ".parquet")

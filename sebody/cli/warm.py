@@ -15,6 +15,7 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Compile, and print how long it takes."""
+    from sebody.basics.tabular import counted
     from sebody.catalogue import kernel_files
     from sebody.kernels.loader import load
     from sebody.runs.first_run import (
@@ -24,7 +25,6 @@ def run(options: argparse.Namespace) -> int:
         compile_part,
         of_bodies,
     )
-    from sebody.tabular import counted
 
     began, names = time.perf_counter(), list(kernel_files())
     together = of_bodies(names)

@@ -13,9 +13,9 @@ from types import ModuleType
 
 import numba
 
+from sebody.basics.errors import InputError
 from sebody.compiler import store
 from sebody.compiler.sources import COMPILER, folder_hash
-from sebody.errors import InputError
 
 VARIABLE = "SEBODY_PLAIN"
 TESTED = (0, 60), (0, 69)       # versions of Numba: from the first, below the second

@@ -18,6 +18,7 @@ from llvmlite import ir
 from numba import carray, cfunc, njit, types
 from numba.extending import intrinsic
 
+from sebody.basics.errors import InputError
 from sebody.compiler import choice
 from sebody.compiler.user_functions import (
     FAULT,
@@ -26,7 +27,6 @@ from sebody.compiler.user_functions import (
     ControlFunction,
     UserFunction,
 )
-from sebody.errors import InputError
 
 HISTORY = types.float64(types.float64)
 _floats, _given = types.CPointer(types.float64), types.Array(types.float64, 1, "C", readonly=True)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from sebody.inputs import shown
+from sebody.basics.inputs import shown
 
 FAULT, TIME, OTHERS = range(3)      # of a record: whether there was a fault, its arguments
 

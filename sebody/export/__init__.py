@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sebody.lazy import load_on_demand
+from sebody.basics.lazy import load_on_demand
 
 if TYPE_CHECKING:
     from sebody.export.exporting import export

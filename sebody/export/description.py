@@ -3,10 +3,10 @@
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
+from sebody.basics.version import __version__
 from sebody.export.interface import PARAMETER
 from sebody.export.prepared import Prepared
 from sebody.model.summary import summary
-from sebody.version import __version__
 
 
 class Variable(NamedTuple):

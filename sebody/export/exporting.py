@@ -5,15 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from uuid import uuid4
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, WriteError
+from sebody.basics.files import check_target, replacing
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, WriteError
 from sebody.export import fmu as fmus
 from sebody.export import toolchain
 from sebody.export.library import write_library
 from sebody.export.platforms import DEFAULT, NATIVE, PLATFORMS, PROCESSORS, host
 from sebody.export.prepared import Prepared, Run
-from sebody.files import check_target, replacing
 from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.runs.tolerance import Tolerance

@@ -7,13 +7,13 @@ from types import ModuleType
 
 from numba import typeof
 
+from sebody.basics.errors import InputError, SebodyError
 from sebody.compiler import store, workers
 from sebody.compiler.code import Code, Place
 from sebody.compiler.decorators import function_code, kernel_code
 from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
 from sebody.engine import control, loop, matrix, restart, row_exchanges
-from sebody.errors import InputError, SebodyError
 from sebody.export import quantities
 from sebody.export.outputs import no_outputs
 from sebody.export.platforms import environment, tag

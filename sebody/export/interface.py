@@ -6,14 +6,15 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from sebody import inputs
 from sebody.assembly.controller_rows import law_counts
 from sebody.assembly.numbering import Numbering
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.contract.layout import FIELD, Row
 from sebody.engine.actuator_inputs import VALUE
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.export.image import Image
 from sebody.kernels.loader import element_kernel
 from sebody.model.control_order import continuous, sampled
@@ -23,7 +24,6 @@ from sebody.model.model import Model
 from sebody.model.parts import Element, Motion
 from sebody.model.time_functions import TimeFunction
 from sebody.model.variants.copying import copied
-from sebody.spelling import unknown
 
 INPUT, ACCELERATION, PARAMETER = range(3)       # kinds, as runtime.h counts them
 

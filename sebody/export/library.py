@@ -3,13 +3,13 @@
 import re
 from pathlib import Path
 
+from sebody.basics.version import __version__
 from sebody.export import toolchain
 from sebody.export.objects import objects
 from sebody.export.platforms import PLATFORMS
 from sebody.export.prepared import Prepared
 from sebody.export.tables import model_h, quoted, recorded_parts
 from sebody.export.toolchain import SOURCES
-from sebody.version import __version__
 
 
 def write_library(model: Prepared, folder: Path, work: Path, platforms: list[str],

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from llvmlite import binding
 
+from sebody.basics.errors import InputError
 from sebody.compiler.code import Code
 from sebody.engine.state import NOT_FINITE
-from sebody.errors import InputError
 from sebody.export.platforms import PLATFORMS, target_processor
 
 OPAQUE = 17             # version of LLVM from which on pointers are opaque, as the wrappers write

@@ -3,11 +3,11 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+from sebody.basics.errors import SebodyError
 from sebody.compiler.code import Place
 from sebody.compiler.sources import folder_hash
 from sebody.compiler.workers import Task, call_all
 from sebody.engine import loop
-from sebody.errors import SebodyError
 from sebody.export.functions import FUNCTIONS, codes, place
 from sebody.export.linking import Part, functions_object, model_object
 from sebody.export.platforms import tag

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering
+from sebody.basics.errors import InputError
 from sebody.contract.law_row import OUTSIDE
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.export.nodal import MISES, STRESSES, Nodal
 from sebody.export.program import Program, Term
 from sebody.export.quantities import VALUE, Outputs

@@ -8,7 +8,7 @@ import sys
 from typing import NamedTuple
 from zlib import crc32
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 _X86 = "e-m:{}-p270:32:32-p271:32:32-p272:64:64-i64:64-i128:128-f80:128-n8:16:32:64-S128"
 _ARM = "e-m:{}-i64:64-i128:128-n32:64-S128-Fn32"

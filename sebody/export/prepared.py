@@ -8,17 +8,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.control import begin
 from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.assembly.motions import motion_kernel
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.units import parsed_units
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
 from sebody.contract.law_row import OUTSIDE
 from sebody.engine.row_exchanges import Exchanges
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.export.functions import kernel_module
 from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
@@ -33,7 +34,6 @@ from sebody.results.units import unit
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
 from sebody.runs.user_faults import functions
-from sebody.units import parsed_units
 
 ROUTINES = "refactorize", "restart", "sample"       # in the order of System.routines
 

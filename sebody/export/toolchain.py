@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from sebody.errors import InputError, WriteError
+from sebody.basics.errors import InputError, WriteError
 from sebody.export.platforms import PLATFORMS
 
 SOURCES = Path(__file__).with_name("c")

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs, memory
-from sebody.errors import InputError
+from sebody.basics import inputs, memory
+from sebody.basics.errors import InputError
 from sebody.fem.beam_model import beam_model
 from sebody.fem.model import FEModel
 from sebody.fem.section import AnySection, section_at

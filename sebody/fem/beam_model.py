@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.basics.vectors import skew
 from sebody.fem import beam_element
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SPATIAL
@@ -15,7 +16,6 @@ from sebody.fem.materials import Material
 from sebody.fem.matrices import assemble
 from sebody.fem.model import FEModel
 from sebody.fem.section import StiffnessSection
-from sebody.vectors import skew
 
 _IN_PLANE = np.array([0, 1, 5, 6, 7, 11])  # DOFs of an element in the xy plane
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from sebody import inputs, memory
+from sebody.basics import inputs, memory
 from sebody.fem.layout import SOLID
 from sebody.fem.materials import Material
 from sebody.fem.matrices import assemble

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 SPATIAL = ("x", "y", "z", "rx", "ry", "rz")
 PLANAR = ("x", "y", "rz")

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody import inputs
-from sebody.units import Units, common_units, parsed_units
+from sebody.basics import inputs
+from sebody.basics.units import Units, common_units, parsed_units
 
 SLOWEST, FASTEST = 100.0, 2e4   # speed of sound in a solid, sqrt(E / density) [m/s]
 LIGHTEST, HEAVIEST = 10.0, 3e4  # its density [kg/m^3]

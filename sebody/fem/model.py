@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.units import parsed_units
 from sebody.fem import mesh
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.layout import PLANAR, SOLID, SPATIAL, equal_rows, mapped_rows
@@ -18,7 +19,6 @@ from sebody.fem.mass_field import MassField, nodal_field
 from sebody.fem.materials import Material, checked_materials
 from sebody.fem.matrices import fe_matrix
 from sebody.fem.stress import SolidStress
-from sebody.units import parsed_units
 
 
 @dataclass(frozen=True, eq=False)

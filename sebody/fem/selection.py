@@ -7,8 +7,8 @@ an error that names the nearest node.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 
 TOLERANCE = 1e-6

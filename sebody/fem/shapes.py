@@ -9,8 +9,8 @@ deformation.
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem import fibres
 from sebody.fem.section import Outline, Section
 

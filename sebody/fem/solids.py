@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.isoparametric import slopes_at
 from sebody.fem.matrices import assemble
 

@@ -17,11 +17,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.fem import mesh
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
-from sebody.tabular import brief
 
 FLAT = 1e-10        # volume of an element, of its size cubed, that is none
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import least_squares
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import at_time
 from sebody.gradients.gradient import Differentiated, fitting, stacked
 from sebody.gradients.node_stresses import history_of

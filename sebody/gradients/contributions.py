@@ -11,9 +11,10 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, LimitWarning
+from sebody.basics.spelling import unknown
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, LimitWarning
 from sebody.gradients.gradient import Differentiated, fitting
 from sebody.gradients.ranking import Contributions, ranked
 from sebody.gradients.responses import Histories, linearized
@@ -24,7 +25,6 @@ from sebody.model.variants import with_options
 from sebody.runs.simulation import Simulation, simulate
 from sebody.runs.steps import whole_steps
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
-from sebody.spelling import unknown
 
 
 class Options(NamedTuple):

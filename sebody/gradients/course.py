@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.gradients import products
 from sebody.gradients.coefficients import Coefficients
 from sebody.gradients.factors import Factors, Scales

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import BODIES, Handle, whole_body
 from sebody.fem.section import AnySection
 from sebody.model.beams import part_bodies, part_shapes

@@ -12,7 +12,7 @@ from scipy import sparse
 from scipy.linalg import lapack
 from scipy.sparse.linalg import splu
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 ROUNDS = 4              # of equilibration
 REDUNDANT = 1e-9        # on the diagonal of multipliers, of equilibrated matrices

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.gradient import MODES, Gradient, differentiate, fitting
 from sebody.gradients.objectives import checked

@@ -11,9 +11,9 @@ from warnings import warn
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, LimitWarning
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, LimitWarning
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
 from sebody.gradients.laws import refuse_break_away

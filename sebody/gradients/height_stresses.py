@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 from sebody.explore.ensembles.changes import whole_body
 from sebody.fem.beam import section_axes
 from sebody.fem.section import Section, StiffnessSection

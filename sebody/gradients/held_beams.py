@@ -31,8 +31,8 @@ from scipy import sparse
 from scipy.linalg import block_diag, eigh
 from scipy.sparse.linalg import eigsh, splu
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem import beam_element
 from sebody.fem.section import Section, StiffnessSection
 from sebody.reduction import ReducedBody

@@ -6,12 +6,12 @@ Motions that are prescribed, and positions that are fixed, are those of the chan
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble, move_prescribed, set_loads, set_loads_beside
 from sebody.engine.links import place_dependent
 from sebody.engine.state import REASONS, State
-from sebody.errors import InputError
 from sebody.gradients.course import Course
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.laws import in_changed

@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import memory
+from sebody.basics import memory
+from sebody.basics.errors import SimulationError
 from sebody.contract.layout import C_STIFFNESS, RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import CHUNK, DONE, FAILED, Record, State
 from sebody.engine.step import write_record
-from sebody.errors import SimulationError
 from sebody.runs.failures import explained
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.simulation import Simulation

@@ -15,6 +15,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import (
     ALONG,
@@ -28,7 +29,6 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.held_states import put_state
 from sebody.gradients.history import History

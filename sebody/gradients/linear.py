@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.assembly.axes import in_frames
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import (
     AT_FRAME,
@@ -25,7 +26,6 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.state import REASONS
-from sebody.errors import InputError
 from sebody.gradients.held_states import put_state
 from sebody.gradients.links import Followers
 from sebody.runs.simulation import Simulation

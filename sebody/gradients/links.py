@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.basics.vectors import skew
 from sebody.engine.links import Links
 from sebody.engine.state import State
-from sebody.vectors import skew
 
 SKEW_AXES = np.array([skew(axis) for axis in np.eye(3)])
 

@@ -12,9 +12,9 @@ from warnings import catch_warnings, simplefilter, warn
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, LimitWarning, SimulationError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, LimitWarning, SimulationError
 from sebody.explore.ensembles.ensemble import Values
 from sebody.explore.ensembles.handles import given
 from sebody.explore.ensembles.member import forms

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.stress import von_mises
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear

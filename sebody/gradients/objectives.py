@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
 from sebody.gradients.history import History

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.handles import handle
 from sebody.gradients.designs import Design

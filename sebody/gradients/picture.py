@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sebody.files import replacing
+from sebody.basics.files import replacing
 from sebody.pictures.plots import ACCENT, PALE, STYLE
 
 if TYPE_CHECKING:

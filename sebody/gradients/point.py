@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.parameters import Column, Parameter, columns_of
 from sebody.model.model import Model

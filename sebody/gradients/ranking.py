@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
-from sebody.spelling import unknown
-from sebody.tabular import text
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
+from sebody.basics.tabular import text
 
 LARGE = 0.3         # of a quantity's largest change: beyond, estimates say that a change is large
 

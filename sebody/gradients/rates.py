@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, VELOCITY
-from sebody.errors import InputError
 from sebody.gradients.linear import Linear, Matrix
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.kernels.rotations import rotate

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 from sebody.gradients.backward_steps import backward
 from sebody.gradients.coefficients import Coefficients
 from sebody.gradients.columns import FRESH, GUESSES, INVERSES, SPENT, Columns, put

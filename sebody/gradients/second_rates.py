@@ -7,10 +7,10 @@ fourth order, at a few states of a run.
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import ACCELERATION, OK
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.links import place_dependent
-from sebody.errors import InputError
 from sebody.gradients.linear import Linear
 from sebody.results import rotations
 from sebody.small_motion.moved_states import STEPS, WEIGHTS

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import memory
-from sebody.errors import SimulationError
+from sebody.basics import memory
+from sebody.basics.errors import SimulationError
 from sebody.gradients.history import History, Past, copy_of, meet, put_back, stretch
 from sebody.runs.simulation import Simulation
 

@@ -5,7 +5,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.vectors import skew
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
@@ -15,7 +16,6 @@ from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import SMALL, Moves, differences
-from sebody.vectors import skew
 
 PIECE = 64          # motions that are compared at a time
 FINER = 30.0        # factor of the steps of differences from one try to the next

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 
-from sebody import inputs
+from sebody.basics import inputs
 from sebody.engine.state import Scheme
 from sebody.fem.section import Section, StiffnessSection
 from sebody.gradients.height_stresses import BeamStress

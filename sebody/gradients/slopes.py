@@ -16,8 +16,8 @@ from warnings import catch_warnings, simplefilter
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError, LimitWarning
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, LimitWarning
 from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.course import Course
 from sebody.gradients.held_residuals import HeldResiduals, port_values

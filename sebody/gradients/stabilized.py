@@ -27,11 +27,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.engine.restart import SHORT, move_ahead
 from sebody.engine.state import REASONS
-from sebody.errors import InputError
 from sebody.gradients.linear import Linear, Matrix, Parts
 from sebody.gradients.rates import columns_of, rows_of
 from sebody.gradients.turns import Turns, turns_of

@@ -2,8 +2,8 @@
 
 from warnings import warn
 
+from sebody.basics.errors import InputError, LimitWarning
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, LimitWarning
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import DENSE
 from sebody.kernels.loader import element_kernel_name, products_kernel_name

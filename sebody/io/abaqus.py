@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.deck.model import deck_model
 from sebody.io.deck.reading import Deck, read_deck
 from sebody.io.reading import Reading

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.files.apart import read_apart
+from sebody.basics.files.reading import existing
 from sebody.fem.model import FEModel
-from sebody.files.apart import read_apart
-from sebody.files.reading import existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
 

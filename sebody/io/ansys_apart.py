@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.files.apart import serve
+from sebody.basics.files.apart import serve
 
 
 def read(path: str, what: str) -> dict[str, NDArray]:

@@ -16,21 +16,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
+from sebody.basics.files.array_files import json_of, opened
+from sebody.basics.files.checksums import changed, checksums
+from sebody.basics.tabular import brief
+from sebody.basics.units import parsed_units
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
-from sebody.files import check_target, replacing
-from sebody.files.array_files import json_of, opened
-from sebody.files.checksums import changed, checksums
 from sebody.io.body_table import body_table
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.missing import lacks, sentences
 from sebody.reduction.recovery import Recovery
-from sebody.tabular import brief
-from sebody.units import parsed_units
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.files.members import Header, Member, Table
+from sebody.basics.units import parsed_units
 from sebody.fem.materials import checked_materials
-from sebody.files.members import Header, Member, Table
 from sebody.reduction.checks import KEEPS
 from sebody.reduction.invariants import LENGTHS
 from sebody.reduction.missing import checked_missing
-from sebody.units import parsed_units
 
 REMEDY = "import the body again"
 _MATRIX = Member(("n", "n"))

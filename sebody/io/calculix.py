@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.deck.model import deck_model
 from sebody.io.deck.reading import Deck, read_deck
 from sebody.io.reading import Reading

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Protocol
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.isoparametric import element_kind
 
 _REMEDY = "the deck is damaged or not the one of the matrices, write it again"

@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target
+from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
-from sebody.files import check_target
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
 from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
@@ -22,7 +23,6 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.reduction.watch import SILENT, Watch, watching
-from sebody.units import parsed_units
 
 
 def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.cylinders import Cylinder, Middle, middle_of, nodes_on_cylinder_faces
 from sebody.fem.model import FEModel
 from sebody.reduction.boundary import BoundaryItem

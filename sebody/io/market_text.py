@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody import inputs
+from sebody.basics import inputs
 from sebody.io.triplets import symmetric
 
 _WORDS = {"layout": ("coordinate", "array"), "numbers": ("real", "integer", "double"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.io.market_text import parsed
 from sebody.io.reading import Reading

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh, null_space
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.reduction.rigid_motions import rigid_motions
 
 _SPAN = 1e-8    # smallest singular value of the nodes' motions, relative to the largest

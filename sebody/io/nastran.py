@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
-from sebody.files.reading import called, existing
+from sebody.basics.errors import InputError
+from sebody.basics.files.reading import called, existing
 from sebody.io.reading import Reading
 from sebody.io.reduced import reduced_parts
 from sebody.io.text import read_text

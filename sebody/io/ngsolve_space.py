@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.materials import uniform_material
 from sebody.fem.model import FEModel
 from sebody.fem.solids import TETRAHEDRON_EDGES, SolidPrestress, knows

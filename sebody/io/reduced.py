@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.body_file import BodyFile
 
 NAMES = ("x", "y", "z", "rx", "ry", "rz")

@@ -7,9 +7,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files.reading import existing
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files.reading import existing
 from sebody.io import abaqus, ansys, calculix, matrix_market, nastran, sid
 from sebody.io.reading import Reading
 from sebody.io.text import read_text

@@ -23,9 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
 from sebody.io.body_file import checked_names
 from sebody.io.modal import ModalBody, ModalNode
 from sebody.io.reading import Reading

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files.reading import text as read_text
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files.reading import text as read_text
 
 
 def fault(path: Path, line: int, what: str, remedy: str) -> InputError:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.text import fault, table, whole
 
 

@@ -9,7 +9,8 @@ from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
-from sebody.collector import without_collector
+from sebody.basics.collector import without_collector
+from sebody.basics.errors import InputError
 from sebody.compiler.sources import TEXT, folder_hash
 from sebody.contract.names import (
     ELEMENT,
@@ -21,7 +22,6 @@ from sebody.contract.names import (
     products_name,
     superelement_name,
 )
-from sebody.errors import InputError
 
 DERIVE = "python -m sebody.derive"
 # written by hand, in this folder

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
 from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
 from sebody.model.time_functions import TimeFunction
-from sebody.spelling import unknown
 
 TURNS, SLIDES = ("revolute", "cylindrical"), ("prismatic", "slider", "cylindrical")
 WAYS = "give joint= the name of one, between= two nodes, or node= and direction="

@@ -3,7 +3,7 @@
 Friction reads the force in a joint as multipliers. A joint of a shared position has none.
 """
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, positions

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
-from sebody.spelling import unknown
 
 PLANE = 1e-9        # largest part of an axis in the plane that is rounding
 

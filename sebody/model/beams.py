@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs, memory
-from sebody.errors import InputError
+from sebody.basics import inputs, memory
+from sebody.basics.errors import InputError
 from sebody.fem import planar_beam, straight_beam
 from sebody.fem.beam import section_axes
 from sebody.fem.model import FEModel

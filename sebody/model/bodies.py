@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.counts import layout_name
-from sebody.errors import InputError
 from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.arguments import dof_block, known, refuse_taken, vector

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import BodyPoint, Element, Superelement
 from sebody.reduction.recovery import Recovery
-from sebody.spelling import unknown
 
 NODE = ".node"      # between the name of a body and the label of an FE node, as in results
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.names import body_contact_kind
-from sebody.errors import InputError
 from sebody.model.arguments import chosen_name, direction, dof_block, known, known_joint, vector
 from sebody.model.body_points import body_point, start_place
 from sebody.model.frames import FRAMES

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
-from sebody.errors import InputError
 from sebody.model.actuators import SLIDES, TURNS
 from sebody.model.arguments import chosen_name
 from sebody.model.control_parts import Controller

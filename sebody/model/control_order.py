@@ -1,6 +1,6 @@
 """Which controllers a model has, of which kind, and in which order a sample calls them."""
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.control_parts import Controller
 from sebody.model.mechanism import Mechanism
 

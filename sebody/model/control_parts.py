@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 from numpy.typing import NDArray
 
+from sebody.basics.tabular import counted
 from sebody.compiler.user_functions import UserFunction
-from sebody.tabular import counted
 
 ROUNDING = 1e-9     # of a sample: what is no part of one
 MOST_DELAY = 10_000_000     # samples, of sensors and controllers

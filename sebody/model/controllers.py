@@ -8,10 +8,11 @@ from types import FunctionType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs as given
-from sebody.control.law import Law
-from sebody.errors import InputError
+from sebody.basics import inputs as given
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import offered
 from sebody.model.continuous import law_element
+from sebody.model.control.law import Law
 from sebody.model.control_order import actuators, order
 from sebody.model.control_parts import MOST_DELAY, Controller
 from sebody.model.functions import (
@@ -23,7 +24,6 @@ from sebody.model.functions import (
 )
 from sebody.model.mechanism import Mechanism
 from sebody.model.sensors import check_new
-from sebody.spelling import offered
 
 
 def controller(model: Mechanism, name: str, law: Law | Callable[..., None],

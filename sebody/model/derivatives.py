@@ -10,7 +10,7 @@ from types import FunctionType, ModuleType
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.functions import rebuilt
 
 # names of NumPy that SymPy has others for; all others are the same in both

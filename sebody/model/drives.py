@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model import motions
 from sebody.model.arguments import (
     along,

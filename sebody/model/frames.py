@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.traits import FrameTraits
-from sebody.errors import InputError
 from sebody.generated import options
 from sebody.reduction import ReducedBody, body_weights
 from sebody.reduction.mean_rotation import central_inertia

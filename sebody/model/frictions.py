@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.apart import has_forces, take_apart
 from sebody.model.arguments import chosen_name
 from sebody.model.mechanism import Mechanism

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.compiler.user_code import (
     Source,
     compile_controller,
@@ -16,7 +17,6 @@ from sebody.compiler.user_code import (
     compile_history,
 )
 from sebody.compiler.user_functions import UserFunction
-from sebody.errors import InputError
 from sebody.model.outside import (
     compiled_from,
     defaults,

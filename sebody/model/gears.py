@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.arguments import chosen_name, known_joint
 from sebody.model.frictions import turning
 from sebody.model.impacts import impact_constants

@@ -9,7 +9,7 @@ from typing import TypeAlias, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
 from sebody.model.functions import compiled_history
 from sebody.model.history_rows import linear, table
 from sebody.model.time_functions import LOAD, TimeFunction

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 LEAST = 1e-2        # smallest restitution: with less the damping grows without bounds
 SLOW = 1e-3         # of the given speed: the steps of slower impacts are not looked at

@@ -1,7 +1,7 @@
 """Which inertia option a superelement has, and whether it stiffens: chosen here alone."""
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.generated import options
 from sebody.model.frames import FRAMES
 from sebody.reduction import ReducedBody

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.arguments import along, axes, chosen_name, dof_block, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import NEAR, check_together, pair

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import offered, unknown
 from sebody.contract.names import body_load_kind
-from sebody.errors import InputError
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
@@ -16,7 +17,6 @@ from sebody.model.histories import clock, time_function
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.model.time_functions import TimeFunction
-from sebody.spelling import offered, unknown
 
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,

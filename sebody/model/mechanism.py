@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
+from sebody.basics.units import parsed_units
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.parts import (
     Beam,
@@ -23,8 +25,6 @@ from sebody.model.parts import (
     Superelement,
 )
 from sebody.model.plane import Plane
-from sebody.spelling import unknown
-from sebody.units import parsed_units
 
 
 @dataclass(eq=False, repr=False)

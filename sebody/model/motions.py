@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from numbers import Number
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
-from sebody.errors import InputError
 from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
 from sebody.model.histories import Source, is_function_with_rates, spline_of

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.model.arguments import dof_block, known, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Node
-from sebody.spelling import unknown
 
 RESERVED = ("constraints", "energy")    # first parts of quantities of the whole model
 

@@ -19,8 +19,8 @@ from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 LOOKUPS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_DEREF"}    # instructions of Python
 ATTRIBUTES = {"LOAD_ATTR", "LOAD_METHOD"}

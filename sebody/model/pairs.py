@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground

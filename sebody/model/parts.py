@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.tabular import counted, vector
 from sebody.compiler.user_functions import UserFunction
 from sebody.fem.section import AnySection
 from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
-from sebody.tabular import counted, vector
 
 
 class Motion(NamedTuple):

@@ -13,8 +13,8 @@ from math import comb, copysign, inf, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody.errors import InputError
-from sebody.inputs import array, items, number, shown
+from sebody.basics.errors import InputError
+from sebody.basics.inputs import array, items, number, shown
 from sebody.model.histories import of_cubics, spline_of
 from sebody.model.time_functions import COEFFICIENTS, TimeFunction, same_waves
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from sebody import inputs as given
-from sebody.errors import InputError
+from sebody.basics import inputs as given
+from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block, known
 from sebody.model.control_parts import MOST_DELAY, Sensor
 from sebody.model.mechanism import Mechanism

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from sebody.errors import InputError
-from sebody.inputs import shown
+from sebody.basics.errors import InputError
+from sebody.basics.inputs import shown
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Node

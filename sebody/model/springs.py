@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.arguments import chosen_name, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair

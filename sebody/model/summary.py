@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from sebody.basics.tabular import counted, table, text, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Node
 from sebody.model.ties import untied
-from sebody.tabular import counted, table, text, vector
 
 
 class Unknowns(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from numpy.typing import ArrayLike
 
-from sebody import inputs
+from sebody.basics import inputs
 from sebody.model.parts import Node
 
 

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
 from sebody.pictures import film
 from sebody.pictures.drawing import overview
 from sebody.pictures.notebook import Page, ShownFile

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.units import Units
 from sebody.pictures.drawn_bodies import DrawnBody, Undeformed
 from sebody.results.units import unit
-from sebody.units import Units
 
 TITLES = {"displacement": "displacement", "von_mises": "von Mises stress"}
 MOST = 1_000_000_000    # products of amplitudes, stations and frames in a search, a second or two

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.units import Units
 from sebody.results.naming import AXES, NORM, Values, is_known, values
 from sebody.results.result import Result
 from sebody.results.units import with_unit
-from sebody.units import Units
 
 SEGMENTS = 4                    # at least, of a history in Welch's method, each half overlapping
 FEWEST = 16                     # samples of a spectrum

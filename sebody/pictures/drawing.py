@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files import check_target
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target
 from sebody.pictures.curves import Panel, panels, values
 from sebody.pictures.notebook import shown
 from sebody.pictures.palette import CURVES

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.pictures.colouring import colourings, values_of
 from sebody.pictures.drawn_bodies import DrawnBody, vertices
 from sebody.pictures.drawn_nodes import extent

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sebody.files import check_target, replacing
+from sebody.basics.files import check_target, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

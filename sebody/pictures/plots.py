@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
 from sebody.pictures.palette import AXES, CONTACT
 from sebody.pictures.wireframe import lines_of
 from sebody.results.result import Result

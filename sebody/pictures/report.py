@@ -6,8 +6,8 @@ from collections import Counter
 from html import escape
 from pathlib import Path
 
-from sebody import inputs
-from sebody.files import check_target, replacing
+from sebody.basics import inputs
+from sebody.basics.files import check_target, replacing
 from sebody.model.summary import model_tables, summary, table
 from sebody.pictures.curves import Curve, Panel, panels
 from sebody.pictures.drawing import draw, overview

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.units import Units
 from sebody.model.mechanism import Mechanism
 from sebody.pictures.arrows import Arrow, arrows
 from sebody.pictures.contact_surfaces import ContactSurface, contact_surfaces, vertices_of
@@ -16,7 +17,6 @@ from sebody.pictures.palette import BODIES
 from sebody.pictures.surface import spatial
 from sebody.results.references import Welded
 from sebody.results.result import Result
-from sebody.units import Units
 
 LOOKED_AT = 25, 200     # frames and stations of a body that what is seen is measured by
 FLAT = 0.03             # share of the largest extent below which a motion is in a plane

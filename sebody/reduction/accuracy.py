@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg, sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.reduction.clamped import ClampedInterior
 from sebody.reduction.component import ComponentModes
 from sebody.reduction.omission import Omission

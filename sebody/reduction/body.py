@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import counted
+from sebody.basics.units import parsed_units
 from sebody.fem.materials import Material, checked_materials
 from sebody.reduction import checks
 from sebody.reduction.damping import modal_damping
@@ -24,8 +26,6 @@ from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid_motions import first_moment, rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
-from sebody.tabular import counted
-from sebody.units import parsed_units
 
 # bodies that are in use, by the rotation of what they were made of
 _rotated: WeakKeyDictionary[ReducedBody, WeakValueDictionary[bytes, ReducedBody]] = (

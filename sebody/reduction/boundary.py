@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.reduction.checks import KEEPS
 from sebody.reduction.interfaces import MeanFace, MeanMotion, RigidFace

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import linalg, sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.reduction.factor import FactoredStiffness, motions_without_strain
 from sebody.reduction.watch import SILENT, Watch
 

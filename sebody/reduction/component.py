@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import block_diag
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.reduction.clamped import ClampedInterior
-from sebody.tabular import brief
 
 _ROUNDING = 1e-11  # ratio of stiffness to its summands below which stiffness is rounding error
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigh
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.stress import StressModes
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.inputs import refusal
 from sebody.fem.model import FEModel
-from sebody.inputs import refusal
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.boundary import Boundary
 from sebody.reduction.clamped import ClampedInterior

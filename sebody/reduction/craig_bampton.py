@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.matrices import fe_matrix
 from sebody.fem.model import FEModel
 from sebody.reduction.accuracy import Accuracy

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 
 def modal_damping(stiffness: NDArray, mass: NDArray, rigid: NDArray, strainless: NDArray,

@@ -8,7 +8,7 @@ from scipy import linalg, sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 _SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
 _STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces

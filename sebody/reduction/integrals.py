@@ -11,8 +11,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.vectors import skew
 from sebody.fem.mass_field import MassField
-from sebody.vectors import skew
 
 
 class MassIntegrals:

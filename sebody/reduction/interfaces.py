@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.fem.faces import surface_mass
 from sebody.fem.model import FEModel
-from sebody.tabular import brief
 
 _LINE = 1e-6  # spread beside a line, relative to that along it, that does not hold a rotation
 

@@ -7,7 +7,7 @@ and J2 follow from Mbar, and K and J2 on rigid translations, too.
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.reduction.checks import NEGATIVE_STIFFNESS_LIMIT, unit_scale
 from sebody.reduction.invariants import LENGTHS, InertiaInvariants
 

@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.tabular import brief
+from sebody.basics import inputs
+from sebody.basics.tabular import brief
 
 # of the arrays: D axes of translation, r of rotation, n coordinates, N with the slaved ones
 LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h": ("r", "r", "N"),

@@ -31,8 +31,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import linalg, sparse
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 from sebody.reduction.accuracy import Accuracy, enough_modes, reached
 from sebody.reduction.body import ReducedBody

@@ -5,8 +5,8 @@ Every reason is a text ``why; what to do``.
 
 from collections.abc import Mapping
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 
 WHAT = ("stresses", "stiffening", "exact inertia")

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import coordinate_names, unit_scale
 from sebody.reduction.invariants import InertiaInvariants, turned_resultants

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 
+from sebody.basics.tabular import brief
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes
-from sebody.tabular import brief
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.isoparametric import SOLID_KINDS, element_kind
 from sebody.fem.stress import SolidStress, StressModes

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.stress import StressModes
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants, turned_resultants

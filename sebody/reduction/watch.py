@@ -4,7 +4,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from sebody import inputs
+from sebody.basics import inputs
 
 
 class Watch:

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import record_counts, rotational
+from sebody.basics.vectors import moment_of
 from sebody.contract.layout import ENERGIES
 from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
 from sebody.results import energy_balance
 from sebody.results import force_quantities as forces
 from sebody.results.recording import Recording
-from sebody.vectors import moment_of
 
 DRIFT = 1e-5        # constraints, of the model's size or rad: a thousand times a step's tolerance
 GOOD = 0.2          # of a limit, up to which a number is good

@@ -15,10 +15,10 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from sebody.assembly.numbering import Numbering, stretch
+from sebody.basics.vectors import moment_of
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node, Superelement
-from sebody.vectors import moment_of
 
 Part = Element | Superelement
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.units import parsed_units
 from sebody.results.naming import STRESS, component_names, look_up
 from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
-from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.fem.stress import principal, von_mises
 from sebody.results.field_states import FieldStates
-from sebody.tabular import brief
 
 AT_ONCE = 64        # states whose displacements are computed together
 

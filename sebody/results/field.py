@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.fem.stress import principal, von_mises
 from sebody.results.envelopes import Envelope, envelope
 from sebody.results.field_point import FieldPoint

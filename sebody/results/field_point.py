@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
 from sebody.fem.stress import principal, von_mises
 from sebody.results.field_states import AXES, FieldStates
 from sebody.results.stresses import Stresses

@@ -7,14 +7,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.vectors import cross
 from sebody.results.body_loads import load_amplitudes
 from sebody.results.motion import BodyMotion, body_motion
 from sebody.results.recording import Recording
 from sebody.results.references import Welded, undeformed
 from sebody.results.stresses import Stresses
-from sebody.vectors import cross
 
 AXES = "global", "body"
 

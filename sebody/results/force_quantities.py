@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import record_counts
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD
-from sebody.errors import InputError
 from sebody.model.parts import Element, Joint, Motion, Node, Superelement
 from sebody.results.recording import Recording
 

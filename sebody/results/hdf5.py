@@ -11,9 +11,9 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
-from sebody.files.hdf5 import SIZE, guarded
-from sebody.version import __version__
+from sebody.basics.errors import InputError
+from sebody.basics.files.hdf5 import SIZE, guarded
+from sebody.basics.version import __version__
 
 SUFFIX = ".h5"
 BLOCK = 2**16       # numbers of a block

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.units import Units
 from sebody.model.summary import table
 from sebody.results.field import Field
 from sebody.results.units import with_unit
-from sebody.units import Units
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import stretch
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block
 from sebody.model.parts import DofBlock, Joint, Node
 from sebody.results.force_quantities import joints

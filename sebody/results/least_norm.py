@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, rotational
+from sebody.basics.errors import InputError
 from sebody.engine.least_norm import take_least_norm
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 
 

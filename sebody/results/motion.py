@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import record_counts
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import Counts
 from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL
-from sebody.errors import InputError
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
 from sebody.model.parts import Superelement
 from sebody.results.recording import Recording

@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import alike
 from sebody.results import quantities, rotations
 from sebody.results.recording import Recording
-from sebody.spelling import alike
 
 AXES, NORM = "xyz", "norm"
 STRESS = "xx", "yy", "zz", "yz", "zx", "xy"

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import record_counts, stretch
+from sebody.basics.errors import InputError
 from sebody.contract.layout import ENERGIES
-from sebody.errors import InputError
 from sebody.model.parts import DofBlock
 from sebody.results import contact_quantities as contacts
 from sebody.results import field_quantities as fields

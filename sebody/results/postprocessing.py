@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY, RECORD_T, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.engine.vectors import copy
-from sebody.errors import InputError
 
 
 class Forces(NamedTuple):

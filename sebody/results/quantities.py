@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterable
 
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import alike
 from sebody.results import contact_quantities as contacts
 from sebody.results import field_quantities as fields
 from sebody.results import force_quantities as forces
@@ -21,7 +22,6 @@ from sebody.results.owners import (
     Owner,
 )
 from sebody.results.recording import Recording
-from sebody.spelling import alike
 
 ALIKE = 0.75            # ratio of `difflib` from which a name is near another
 OF_FIELD = (*fields.QUANTITIES, "strain", "principal")

@@ -48,7 +48,7 @@ class Recording:
     seconds: float                  # in the compiled loop
     failure: str = ""
     start: Start | None = None
-    warnings: tuple[str, ...] = ()  # of the run, see sebody.limits.watch
+    warnings: tuple[str, ...] = ()  # of the run, see sebody.runs.limits.watch
     error: float | None = None      # estimate over allowed error: see sebody.runs.accuracy
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far

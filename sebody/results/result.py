@@ -8,7 +8,8 @@ from pathlib import Path
 
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.units import Units, parsed_units
 from sebody.engine.clock import CONTROL
 from sebody.engine.scalars import record
 from sebody.model.summary import table
@@ -24,7 +25,6 @@ from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import unpacked, write
 from sebody.results.vtk_series import save_vtk
-from sebody.units import Units, parsed_units
 
 LABELS = 21             # columns of the labels of a summary
 

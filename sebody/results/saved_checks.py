@@ -12,11 +12,11 @@ from typing import Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from sebody import inputs
 from sebody.assembly.numbering import Numbering, record_counts
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
 from sebody.contract.layout import ENERGIES, RECORD
-from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody

@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
+from sebody.basics.files.array_files import json_of, opened
+from sebody.basics.files.checksums import changed, checksums
+from sebody.basics.files.members import Member, Table
+from sebody.basics.files.reading import existing
+from sebody.basics.units import parsed_units
 from sebody.contract.layout import RECORD_T
 from sebody.engine.clock import CONTROL
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
-from sebody.files.array_files import json_of, opened
-from sebody.files.checksums import changed, checksums
-from sebody.files.members import Member, Table
-from sebody.files.reading import existing
 from sebody.model.mechanism import Mechanism
 from sebody.results import hdf5
 from sebody.results.description import described, restored
@@ -28,7 +29,6 @@ from sebody.results.postprocessing import Forces
 from sebody.results.recording import EVALUATED, Recording, Start
 from sebody.results.saved_checks import check_notes, member_lengths
 from sebody.results.units import unit
-from sebody.units import parsed_units
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 VERSION = 4

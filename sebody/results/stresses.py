@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes, von_mises
 from sebody.generated.options import INERTIA_OPTIONS

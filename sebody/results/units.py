@@ -1,6 +1,6 @@
 """Units of quantities: in words, or by name where the model has units."""
 
-from sebody.units import Units
+from sebody.basics.units import Units
 
 OF_QUANTITY = {
     "t": "time", "position": "length", "displacement": "length", "velocity": "length/time",

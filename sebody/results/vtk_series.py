@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.recording import Recording

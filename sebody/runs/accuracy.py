@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sebody import inputs
 from sebody.assembly.numbering import placed, rotational
+from sebody.basics import inputs
+from sebody.basics.errors import Interrupted, LimitWarning, SimulationError
 from sebody.engine.state import Scheme
-from sebody.errors import Interrupted, LimitWarning, SimulationError
 from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.results.result import Result

@@ -5,10 +5,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, stretch
+from sebody.basics.vectors import moment_of
 from sebody.engine.state import State
 from sebody.model.body_points import shapes
 from sebody.model.parts import DofBlock, Element
-from sebody.vectors import moment_of
 
 
 def directions(element: Element, numbering: Numbering, state: State) -> list[NDArray]:

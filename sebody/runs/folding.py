@@ -8,11 +8,11 @@ from scipy.linalg import null_space
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import MOTION
-from sebody.limits.axial import Axial, Load
-from sebody.limits.body_limits import limits_of, remedy
-from sebody.limits.thresholds import FOLDED
 from sebody.model.parts import Superelement
 from sebody.results.motion import evaluated
+from sebody.runs.limits.axial import Axial, Load
+from sebody.runs.limits.body_limits import limits_of, remedy
+from sebody.runs.limits.thresholds import FOLDED
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative
 

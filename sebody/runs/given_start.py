@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.numbering import Numbering, coordinates, record_counts, stretch
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD
 from sebody.engine.state import State
-from sebody.errors import InputError
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 from sebody.results.result import Result

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import CFUNCTYPE, c_int64, c_void_p
 
-from sebody import inputs
 from sebody.assembly.independent_parts import FEWEST
+from sebody.basics import inputs
 from sebody.engine.mailbox import CALL
 from sebody.engine.state import HELP, State
 from sebody.engine.system import System

@@ -9,12 +9,12 @@ from scipy.sparse import csc_matrix
 
 from sebody.assembly.evaluation import evaluate, matrix
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.basics.errors import InputError
 from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.state import ASKED, State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
 from sebody.runs.redundancy import Solver, least, part_sizes

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, coordinates
+from sebody.basics.errors import InputError
 from sebody.engine.state import State
-from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Superelement
 from sebody.reduction import ReducedBody

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from inspect import signature
 from typing import Any
 
-from sebody import inputs
+from sebody.basics import inputs
 
 BAR = 40                # characters
 PATIENCE = 1.0          # seconds before it appears

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import memory
+from sebody.basics import memory
 from sebody.contract.layout import RECORD_T
 from sebody.engine.state import Record, State
 from sebody.engine.step import write_record

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target, replacing
+from sebody.basics.files.array_files import json_of, opened
+from sebody.basics.files.checksums import changed, checksums
+from sebody.basics.files.members import Header, Member, Table
 from sebody.contract.layout import RECORD_T
 from sebody.engine.clock import CLOCK, CONTROL
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import AHEAD, EVALUATED, FINEST, JUMP, REASONS, SOLVED, Scheme, State
-from sebody.errors import InputError
-from sebody.files import check_target, replacing
-from sebody.files.array_files import json_of, opened
-from sebody.files.checksums import changed, checksums
-from sebody.files.members import Header, Member, Table
 from sebody.model.model import Model
 from sebody.runs.fingerprint import fingerprint
 from sebody.runs.simulation import Simulation

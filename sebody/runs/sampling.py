@@ -5,9 +5,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.law_row import DOT, OUTSIDE
 from sebody.engine.control import set_input, set_next
 from sebody.engine.control_data import (
@@ -18,7 +19,6 @@ from sebody.engine.control_data import (
 )
 from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.model.control_order import continuous, sampled
 from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism

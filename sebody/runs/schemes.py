@@ -2,9 +2,9 @@
 
 from functools import cache
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 
 
 def generalized_alpha(rho: float = 0.9, tolerance: float = 1e-8, tangent: str = "consistent",

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 
+from sebody.basics.errors import InputError
 from sebody.engine.evaluate import to_body_axes, update_rotations
-from sebody.errors import InputError
 from sebody.results import rotations
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin

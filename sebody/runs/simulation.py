@@ -8,15 +8,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
 from sebody.engine.system import System
-from sebody.errors import InputError, Interrupted, SimulationError
-from sebody.limits.watch import Watch
 from sebody.model.model import Model
 from sebody.model.summary import summary
 from sebody.results.recording import Start
@@ -28,6 +27,7 @@ from sebody.runs.given_start import take
 from sebody.runs.helpers import TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
+from sebody.runs.limits.watch import Watch
 from sebody.runs.progress import showing
 from sebody.runs.pulses import unseen, untold
 from sebody.runs.recorded_rows import RecordedRows

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs, memory
 from sebody.assembly.evaluation import evaluate
+from sebody.basics import inputs, memory
+from sebody.basics.errors import InputError, SimulationError
 from sebody.contract.layout import FIELD, RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads
-from sebody.errors import InputError, SimulationError
 from sebody.model.model import Model
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result

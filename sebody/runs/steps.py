@@ -1,7 +1,7 @@
 """How many steps a run may have, and which is the last."""
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 MOST_STEPS = 1e12       # of a run: weeks, at a microsecond each
 OFF_GRID = 1e-6         # of a step: further away, a time is none of the grid's

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 UNSIZED = ("the model has no characteristic length: errors of positions are relative to one unit "
            "of length; give an absolute tolerance, such as Tolerance(1e-3, position=1e-6)")

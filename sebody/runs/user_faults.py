@@ -5,8 +5,8 @@ A function has a fault where it raises, or gives what is not finite.
 
 from collections.abc import Iterator
 
+from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
-from sebody.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.outside import changed
 

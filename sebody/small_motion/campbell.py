@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs, tabular
-from sebody.errors import InputError
+from sebody.basics import inputs, tabular
+from sebody.basics.errors import InputError
 from sebody.model.model import Model
 from sebody.pictures.frequency_pictures import save_campbell
 from sebody.runs.statics import equilibrium

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lstsq, lu_factor, lu_solve, qr, solve_triangular
 
 from sebody.assembly.numbering import hidden_states
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.coordinate_names import coordinate_names

@@ -21,11 +21,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.evaluation import evaluate
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
-from sebody.errors import InputError
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.linearization import vibrations

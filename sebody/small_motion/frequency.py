@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs, tabular
 from sebody.assembly.evaluation import evaluate
+from sebody.basics import inputs, tabular
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
-from sebody.errors import InputError
 from sebody.model.parts import Element
 from sebody.pictures.frequency_pictures import save_response
 from sebody.results.naming import component_names

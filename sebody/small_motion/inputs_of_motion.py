@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
 from sebody.assembly.evaluation import evaluate
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
-from sebody.errors import InputError
 from sebody.model.parts import Element, Motion
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin, motion

@@ -10,20 +10,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import LinAlgError, null_space
 
-from sebody import inputs
 from sebody.assembly.numbering import hidden_states
-from sebody.errors import InputError
-from sebody.limits.watch import Watch
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.results.contact_quantities import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
+from sebody.runs.limits.watch import Watch
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative, turning
 from sebody.small_motion import mode_tables
 from sebody.small_motion.eigenvalues import NEGLIGIBLE, eigenvalues, undamped
 from sebody.small_motion.shapes import Shapes
-from sebody.tabular import brief
 
 
 def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:

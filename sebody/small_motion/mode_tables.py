@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import tabular
+from sebody.basics import tabular
 
 HEADS = "mode", "frequency [Hz]", "damping ratio", "real part [1/s]"
 RIGID = 1e-7        # of the largest eigenvalue: a smaller one is that of a rigid motion

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import coordinates
+from sebody.basics.errors import InputError
 from sebody.engine.links import pull_back
-from sebody.errors import InputError
 from sebody.results import rotations
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, matrix_balance, schur, solve_sylvester
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 
 NEAR = 1e-5         # distance of poles, of the larger one or of the typical one, in one block
 RANK = 1e-9         # singular value, of the largest, of a direction that is not reached

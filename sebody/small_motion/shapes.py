@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.results.naming import component_of
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import motion

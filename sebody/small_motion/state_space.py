@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody import inputs as given
-from sebody.errors import InputError
+from sebody.basics import inputs as given
+from sebody.basics.errors import InputError
+from sebody.basics.tabular import brief
 from sebody.results.naming import component_names
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin, motion
@@ -28,7 +29,6 @@ from sebody.small_motion import inputs_of_motion, realization
 from sebody.small_motion.constrained_motion import ConstrainedMotion
 from sebody.small_motion.linearization import small_motion
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
-from sebody.tabular import brief
 
 if TYPE_CHECKING:
     from control import StateSpace as ControlSystem

@@ -18,10 +18,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
+from sebody.basics.files import replacing
 from sebody.explore.advice import Advice, advise
 from sebody.explore.advice.changes import Step
-from sebody.files import replacing
 from sebody.verify.chart.timing import poor_variants, processor_seconds, repeated
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -16,9 +16,9 @@ from collections import Counter
 from pathlib import Path
 
 from sebody import LimitWarning
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
+from sebody.basics.files import replacing
 from sebody.explore.advice import Unreached, advise
-from sebody.files import replacing
 
 sys.path.insert(0, str(Path(__file__).parent))
 from advice_general import GENERAL

@@ -20,7 +20,7 @@ import numpy as np
 
 from sebody import LimitWarning, simulate
 from sebody.analysis import contributions
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
 from sebody.model.variants import keep_modes, rigid
 from sebody.runs.schemes import generalized_alpha
 

@@ -81,8 +81,8 @@ def measure(scene_name: str, pairs: int, t_end: float | None) -> dict:
     import numpy as np
 
     from sebody import Simulation
+    from sebody.basics.errors import SebodyError
     from sebody.catalogue import builder
-    from sebody.errors import SebodyError
     from sebody.export import export
     from sebody.export.platforms import host
 

@@ -22,7 +22,8 @@ import numpy as np
 
 from sebody import LimitWarning, Model
 from sebody.analysis import equilibrium
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
+from sebody.basics.files import replacing
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.estimates import expected
 from sebody.explore.advice.first_runs import LONGER, run_first
@@ -34,7 +35,6 @@ from sebody.explore.advice.report import conclusion
 from sebody.explore.advice.runner import FINER, Laboratory
 from sebody.explore.advice.runs import Runs
 from sebody.explore.advice.search import Search
-from sebody.files import replacing
 from sebody.model.variants import divide
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance

@@ -28,7 +28,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Builder, Choice, Step
 from sebody.explore.advice.first_runs import LONGER
 from sebody.explore.advice.forms import Form, Part, parts_of

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from pages import all_pages
 
-from sebody import catalogue, errors, simulate
+from sebody import catalogue, simulate
+from sebody.basics import errors
 from sebody.catalogue import scenes
 from sebody.cli import run, scene_arguments
 from sebody.cli.entry import main

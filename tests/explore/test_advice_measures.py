@@ -6,7 +6,7 @@ from advised_crane import SOFT, T_END, H, crane
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import advise, equilibrium
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
 from sebody.explore.advice.measures import Measure, absolute
 
 t = np.linspace(0.0, 2.0, 401)

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.linalg import eigh
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, Section, frame, hexahedral_block, planar_beam, straight_beam
 
 AREA, IY, IZ, J, E, NU, RHO, KAPPA = 6.0, 4.5, 2.0, 4.7, 2.1e6, 0.3, 7.8e-3, 0.8

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, hexahedral_block, straight_beam
 from sebody.fem.section import Section
 from sebody.reduction import MeanFace, RigidFace, craig_bampton

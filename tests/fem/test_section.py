@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.linalg import eigh
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import (
     Section,
     StiffnessSection,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, hexahedral_block
 from sebody.fem.selection import nearest_node, nodes_in_box, nodes_on_cylinder, nodes_on_plane
 

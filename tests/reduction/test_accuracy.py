@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import linalg
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import Section, frame, hexahedral_block, planar_beam
 from sebody.reduction import Accuracy, RigidFace, clamped, reduce
 from sebody.reduction.accuracy import stiffness_errors

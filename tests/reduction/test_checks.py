@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from sebody.errors import InputError, SebodyError
+from sebody.basics.errors import InputError, SebodyError
 from sebody.fem import Section, straight_beam
 from sebody.reduction import ReducedBody, craig_bampton
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, Section, frame, hexahedral_block, planar_beam, straight_beam
 from sebody.reduction import clamped, component_modes, craig_bampton, reduce
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, hexahedral_block
 from sebody.fem.selection import nodes_on_plane
 from sebody.reduction import MeanFace, craig_bampton, factor

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import Section, straight_beam
 from sebody.reduction import craig_bampton
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, Section, frame, hexahedral_block, straight_beam
 from sebody.reduction import RigidFace, craig_bampton
 from sebody.reduction.invariants import InertiaInvariants

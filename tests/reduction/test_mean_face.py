@@ -7,7 +7,7 @@ from scipy import linalg
 from scipy.spatial.transform import Rotation
 from spinning_body import turned_resultants
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, hexahedral_block, planar_beam, straight_beam
 from sebody.fem.faces import surface_mass
 from sebody.fem.section import Section

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import linalg
 
 from sebody import Model, simulate
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import FEModel, Section, frame, hexahedral_block, planar_beam, straight_beam
 from sebody.fem.selection import nodes_on_plane
 from sebody.reduction import Accuracy, MeanFace, RigidFace, craig_bampton, reduce

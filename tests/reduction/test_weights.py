@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem import Section, frame, hexahedral_block, straight_beam
 from sebody.reduction import body_weights, craig_bampton, frame_weights
 

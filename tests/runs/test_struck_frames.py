@@ -20,10 +20,10 @@ from struck_frames import (
 
 from sebody import LimitWarning, Model, SimulationError, simulate
 from sebody.fem import StiffnessSection, frame, planar_beam, straight_beam
-from sebody.limits.quality import increase
 from sebody.model.frames import default_frame
 from sebody.reduction import craig_bampton
 from sebody.results.motion import body_motion
+from sebody.runs.limits.quality import increase
 
 # Energy of a step is off by the square of its length times the frequencies it resolves, back and
 # forth. What it may drift by is the loss of nonlinear beams at the same step and as much again.

@@ -22,7 +22,7 @@ from struck_frames import (
 
 from sebody import InputError, LimitWarning, Model, generalized_alpha, simulate
 from sebody.analysis import energy_gain
-from sebody.limits.quality import increase
+from sebody.runs.limits.quality import increase
 
 BLOW = [(0, 0), (0.003, 2.0), (0.008, -0.5), (0.01, 0)]
 WALLS = np.array([(-1.0, 0.0, 0.2), (2.0, 0.3, 0.0), (0.4, 1.0, -0.7)])

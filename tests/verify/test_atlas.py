@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from sebody import LimitWarning, Simulation, generalized_alpha, hht
 from sebody.catalogue import kernel_files, scenes
 from sebody.cli.entry import main
-from sebody.limits.watch import spin_limit
+from sebody.runs.limits.watch import spin_limit
 from sebody.scenes import heavy_top, hinged_beam, spherical_beam_strong, spin_up
 from sebody.verify import atlas
 from sebody.verify.atlas.beams import arm

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.advice.first_runs import run_first
 from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.measures import absolute

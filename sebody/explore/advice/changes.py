@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Mapping
 from typing import NamedTuple
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.explore.advice.forms import Form, Part
 from sebody.model.model import Model
 from sebody.model.variants import (

@@ -10,9 +10,9 @@ import ast
 import re
 from functools import cache
 
+from sebody.basics.errors import InputError
 from sebody.contract.counts import layout_name
 from sebody.contract.names import PLANAR, element_name
-from sebody.errors import InputError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.forms import Form, Part
 from sebody.generated.options import INERTIA_OPTIONS

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.estimates import Estimates
 from sebody.explore.advice.guards import (

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism

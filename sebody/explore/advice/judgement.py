@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.explore.advice.reference import Reference
 from sebody.explore.advice.runs import Run
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.explore.advice.estimates import UNSURE
 from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.linearity import bent, local_rotations

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
-from sebody.errors import InputError
-from sebody.units import FORCES, LENGTHS, PRESSURES, parsed_units
+from sebody.basics.errors import InputError
+from sebody.basics.units import FORCES, LENGTHS, PRESSURES, parsed_units
 
 KINDS = "peak", "rms", "final"
 WORDS = re.compile(r"(?P<name>[^<]+?)(?: < (?P<cut>\S+) Hz)?(?: (?P<kind>peak|rms|final))?")

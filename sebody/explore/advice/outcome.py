@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.model import Model
 from sebody.runs.tolerance import Tolerance
 

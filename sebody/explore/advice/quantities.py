@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError, LimitWarning, SimulationError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, LimitWarning, SimulationError
 from sebody.explore.advice.inside import Places
 from sebody.explore.advice.measures import Measure
 from sebody.explore.advice.steady import steady_frequencies

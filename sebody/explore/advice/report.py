@@ -3,6 +3,7 @@
 from math import ceil
 from time import process_time
 
+from sebody.basics.units import parsed_units
 from sebody.explore.advice.changes import Choice
 from sebody.explore.advice.labels import limiting
 from sebody.explore.advice.limits import doubts
@@ -12,7 +13,6 @@ from sebody.explore.advice.runner import Tried
 from sebody.explore.advice.search import Search
 from sebody.results.units import unit_of_curves
 from sebody.runs.tolerance import Tolerance
-from sebody.units import parsed_units
 
 REPEATS = 2         # further runs of what is compared in time
 SAME = 0.02         # by which times of runs differ by chance

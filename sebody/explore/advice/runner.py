@@ -5,7 +5,7 @@ from math import inf
 from time import process_time
 
 from sebody.assembly.build import build
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Builder, Choice, Step
 from sebody.explore.advice.cost import Cost
 from sebody.explore.advice.estimates import Estimates, expected

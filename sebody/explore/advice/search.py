@@ -3,8 +3,8 @@
 from functools import partial
 from math import inf
 
+from sebody.basics.errors import InputError
 from sebody.contract.names import ANY
-from sebody.errors import InputError
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.combinations import combinations
 from sebody.explore.advice.cost import of_form

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.variants.copying import copied
 from sebody.results.result import Result

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Node, Superelement
 from sebody.model.variants.copying import exchange

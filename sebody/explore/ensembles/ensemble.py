@@ -9,9 +9,9 @@ from threading import Lock
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sebody import inputs, memory
+from sebody.basics import inputs, memory
+from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
 from sebody.explore.ensembles.handles import given, handles

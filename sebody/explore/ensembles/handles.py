@@ -26,12 +26,12 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import changes, load_changes
 from sebody.explore.ensembles.changes import Handle
 from sebody.model.model import Model
-from sebody.spelling import unknown
 
 GRAVITY = "gravity"
 

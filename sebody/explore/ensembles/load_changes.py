@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import LOADS, MOTION, Handle, attribute_of, constants_of
 from sebody.model.control_parts import Controller
 from sebody.model.histories import time_function

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T
 from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
@@ -25,7 +26,6 @@ from sebody.engine.state import (
 )
 from sebody.engine.step import write_record
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.explore.ensembles import beginning
 from sebody.explore.ensembles.outputs import Fold, Output
 from sebody.explore.ensembles.start_values import Image

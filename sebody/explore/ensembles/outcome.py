@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import tabular
-from sebody.spelling import unknown
+from sebody.basics import tabular
+from sebody.basics.spelling import unknown
 
 
 @dataclass(repr=False)

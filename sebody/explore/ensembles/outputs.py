@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.contract.counts import MEMBERS
-from sebody.errors import InputError
 from sebody.explore.ensembles.folding import FACTS, FOUND, Folds, fold, write_values
 
 # as of `fold`

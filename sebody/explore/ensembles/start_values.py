@@ -15,10 +15,10 @@ from scipy.sparse import csr_array
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.basics.errors import InputError
 from sebody.engine.offsets import Offsets, arrays_of, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.errors import InputError
 from sebody.explore.ensembles.changes import BODIES, MOTION, Handle
 from sebody.runs.simulation import Simulation
 

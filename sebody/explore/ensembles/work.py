@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.contract.counts import MEMBERS
-from sebody.errors import InputError
 from sebody.explore.ensembles.member import Copies, Course, Form
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.basics.units import parsed_units
 from sebody.explore.inspection.measures import Matrices, free_modes
 from sebody.io.body_file import BodyFile
 from sebody.pictures.palette import BODIES, CURVES, rgb
@@ -23,7 +24,6 @@ from sebody.pictures.rendering import (
 from sebody.pictures.surface import spatial, surface_of
 from sebody.pictures.surface_parts import Surface
 from sebody.pictures.wireframe import neighbours
-from sebody.units import parsed_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

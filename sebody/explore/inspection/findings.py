@@ -4,16 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.explore.inspection.measures import Matrices
 from sebody.io.body_file import BodyFile
-from sebody.limits.thresholds import FLAT
 from sebody.reduction.checks import (
     NEGATIVE_MASS_LIMIT,
     NEGATIVE_STIFFNESS_LIMIT,
     RIGID_LIMIT,
     SYMMETRY_LIMIT,
 )
+from sebody.runs.limits.thresholds import FLAT
 
 # Residuals below the limit of use that still tell of few printed digits: fourteen leave 1e-9.
 _DIGITS = 1e-8

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.body_file import BodyFile
-from sebody.limits.thresholds import PERIOD
 from sebody.reduction import frame_weights
 from sebody.reduction.checks import (
     asymmetry,
@@ -22,6 +21,7 @@ from sebody.reduction.checks import (
     unit_scale,
 )
 from sebody.reduction.rigid_motions import rigid_motions
+from sebody.runs.limits.thresholds import PERIOD
 
 SHOWN = 12          # frequencies
 _MASSLESS = 1e-12   # eigenvalue of the unit-free mass, relative to the largest

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.explore.inspection.measures import frequencies, matrices_of
 from sebody.io.body_file import BodyFile
 from sebody.reduction.checks import rigid_residual, unit_scale

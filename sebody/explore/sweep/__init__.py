@@ -13,8 +13,10 @@ from uuid import uuid4
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.files import check_target
+from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import Output
 from sebody.explore.ensembles.handles import GRAVITY
 from sebody.explore.ensembles.work import processors
@@ -24,9 +26,7 @@ from sebody.explore.sweep.batches import OF_RUN, Plan, check_plan, tasks_of
 from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution
-from sebody.files import check_target
 from sebody.runs.progress import showing
-from sebody.spelling import unknown
 
 BATCH = 100             # runs of a task
 SAVED = 5.0             # seconds between two savings of the table

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError, SebodyError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError, SebodyError
 from sebody.explore.ensembles import Ensemble, Output
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.steps import check_steps

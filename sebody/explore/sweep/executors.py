@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from logging import CRITICAL, getLogger
 from typing import Any
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.sweep.batches import Answer, Batch, run_task
 
 AHEAD = 4               # tasks that wait for each worker: more would only fill the scheduler
@@ -107,7 +107,7 @@ def _check_versions(client: Any, address: str | None) -> None:
 
 def _version() -> str:
     """Version of the package, also that of a worker."""
-    from sebody.version import __version__
+    from sebody.basics.version import __version__
 
     return __version__
 

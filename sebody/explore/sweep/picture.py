@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
+from sebody.basics.files import replacing
 from sebody.explore.sweep.table import Table
-from sebody.files import replacing
 from sebody.pictures.plots import ACCENT, PALE, STYLE
 
 MOST = 4                # rows and columns of the picture

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.explore.sweep.design import Design, check_runs
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
+from sebody.basics.files import members, replacing
+from sebody.basics.files.array_files import json_of, opened
+from sebody.basics.files.checksums import changed, checksums
 from sebody.explore.sweep.batches import Answer
-from sebody.files import members, replacing
-from sebody.files.array_files import json_of, opened
-from sebody.files.checksums import changed, checksums
 
 if TYPE_CHECKING:
     import pandas

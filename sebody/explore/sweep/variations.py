@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 
 RANGE = re.compile(r"^(-?[^:]+):(-?[^:]+)(?::(.+))?$")
 CALL = re.compile(r"^(\w+)\((.*)\)$")

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.text import fault, read_text
 
 _DEPTH = 10     # of files that include others; more is a circle

@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.io.deck.cards import Card, Row, plain_name, read_cards
 from sebody.io.deck.materials import (
     DeckMaterial,

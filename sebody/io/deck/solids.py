@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.fem.isoparametric import SOLID_KINDS
 from sebody.fem.solids import InvertedCell, SolidPrestress, knows
 from sebody.fem.stress import SolidStress

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody import inputs
+from sebody.basics import inputs
+from sebody.basics.spelling import unknown
 from sebody.contract.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
@@ -15,7 +16,6 @@ from sebody.model.parts import Element, Node, Superelement
 from sebody.model.summary import unknowns
 from sebody.model.variants.moved_points import on_body
 from sebody.reduction import ReducedBody
-from sebody.spelling import unknown
 
 
 class Variant(NamedTuple):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block
 from sebody.model.joints import spherical
 from sebody.model.mechanism import Mechanism

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.beams import beam
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, DofBlock, Node

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from sebody.basics.errors import InputError
 from sebody.contract.names import body_contact_kind
-from sebody.errors import InputError
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Attachment, Element, Superelement
 from sebody.model.variants.flattening import Flattening

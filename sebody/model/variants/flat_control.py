@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.actuators import SLIDES, TURNS
 from sebody.model.continuous import law_element
 from sebody.model.control_order import actuators, signals

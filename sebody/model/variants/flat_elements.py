@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Axes, Element, Joint, positions, rotations
 from sebody.model.variants.flat_contacts import LAWS, flat_places

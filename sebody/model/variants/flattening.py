@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model.pairs import NEAR
 from sebody.model.parts import Attachment, DofBlock, Motion, Node
 from sebody.model.plane import Plane

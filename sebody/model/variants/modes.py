@@ -1,7 +1,7 @@
 """Fewer internal modes of a superelement."""
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.variants.copying import Variant, copied, exchange, placed
 from sebody.reduction.summary import frequencies

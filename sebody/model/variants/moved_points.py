@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
+from sebody.basics.errors import InputError
 from sebody.contract.names import body_contact_kind
-from sebody.errors import InputError
 from sebody.model.body_points import start_place, surface_touched
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism

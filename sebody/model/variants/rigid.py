@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.model import bodies, loads
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism

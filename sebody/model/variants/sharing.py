@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from sebody import inputs
-from sebody.errors import InputError
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Element, Joint, Node
 from sebody.model.sharing import can_share, share
 from sebody.model.variants.copying import Variant, checked, copied, fewer
-from sebody.spelling import unknown
 
 _TOGETHER = ("weld", "prismatic")       # joints whose nodes turn together
 _NAMES = {"position": "positions", "rotation": "rotations"}

@@ -7,8 +7,8 @@ or it says what this program is to do there.
 import warnings
 from collections.abc import Callable, Iterable
 
+from sebody.basics.errors import InputError, LimitWarning
 from sebody.contract.names import element_name, superelement_name
-from sebody.errors import InputError, LimitWarning
 from sebody.runs.first_run import PARTS, compile_missing
 from sebody.verify.atlas import frames, geometry, inertia, integration, spin, torsion, trust
 from sebody.verify.atlas.draw import draw

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sebody.errors import InputError, SimulationError
+from sebody.basics.errors import InputError, SimulationError
 from sebody.fem import Section
 from sebody.model.model import Model
 from sebody.results.result import Result

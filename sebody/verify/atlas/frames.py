@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import LimitWarning, SimulationError
+from sebody.basics.errors import LimitWarning, SimulationError
 from sebody.fem import Section, frame
 from sebody.model.model import Model
 from sebody.reduction import ReducedBody, craig_bampton

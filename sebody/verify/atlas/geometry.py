@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble
-from sebody.errors import InputError
 from sebody.fem import straight_beam
 from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from sebody.basics.errors import SimulationError
 from sebody.engine.state import Scheme
-from sebody.errors import SimulationError
 from sebody.model.model import Model
 from sebody.runs.schemes import generalized_alpha, hht
 from sebody.runs.simulation import Simulation, simulate

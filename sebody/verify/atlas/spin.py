@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sebody.errors import SimulationError
+from sebody.basics.errors import SimulationError
 from sebody.model.model import Model
 from sebody.runs.simulation import simulate
 from sebody.scenes import spin_up

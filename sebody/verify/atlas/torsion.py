@@ -3,8 +3,8 @@
 import numpy as np
 
 from sebody.fem import StiffnessSection
-from sebody.limits.watch import spin_limit
 from sebody.model.model import Model
+from sebody.runs.limits.watch import spin_limit
 from sebody.runs.statics import equilibrium
 from sebody.small_motion.linearization import modes
 from sebody.verify.atlas.beams import FRAMES, UNSTABLE, onset

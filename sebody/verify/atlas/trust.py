@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.integrate import trapezoid
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.explore.advice import Advice, advise
 from sebody.explore.advice.loads import SEEN, missed
 from sebody.explore.advice.steady import steady_frequencies

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.runs.first_run import prepare
 from sebody.verify.bench import ensemble, gradient, machine, own, peer
 from sebody.verify.bench.measurement import Measurement

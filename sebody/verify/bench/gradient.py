@@ -5,8 +5,8 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from sebody.basics.errors import LimitWarning
 from sebody.catalogue import builder
-from sebody.errors import LimitWarning
 from sebody.explore.ensembles import final
 from sebody.gradients.gradient import gradient
 from sebody.model.model import Model

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from io import StringIO
 from types import ModuleType
 
-from sebody.errors import InputError
+from sebody.basics.errors import InputError
 from sebody.verify.bench.measurement import Measurement
 from sebody.verify.bench.own import LOOPS, MODES
 from sebody.verify.references import tip_error

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.errors import SimulationError
+from sebody.basics.errors import SimulationError
+from sebody.basics.files import check_target, replacing
 from sebody.explore.advice.quantities import history_in_space
-from sebody.files import check_target, replacing
 from sebody.runs.first_run import prepare
 from sebody.runs.simulation import Simulation
 from sebody.verify.bench import peer

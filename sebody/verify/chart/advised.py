@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sebody.errors import SebodyError
+from sebody.basics.errors import SebodyError
 from sebody.explore.advice import Advice, advise
 from sebody.explore.advice.changes import Step
 from sebody.model.model import Model

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from sebody.basics.errors import InputError, SimulationError
 from sebody.engine.state import Scheme
-from sebody.errors import InputError, SimulationError
 from sebody.explore.advice.changes import Builder, Choice, Step
 from sebody.explore.advice.forms import Form, Part, parts_of
 from sebody.explore.advice.quantities import (

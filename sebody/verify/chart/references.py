@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.errors import InputError
-from sebody.files import replacing
-from sebody.files.array_files import opened
-from sebody.files.members import Member, Table
+from sebody.basics.errors import InputError
+from sebody.basics.files import replacing
+from sebody.basics.files.array_files import opened
+from sebody.basics.files.members import Member, Table
 from sebody.kernels.loader import user_directory
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import simulate

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from sebody.errors import LimitWarning
+from sebody.basics.errors import LimitWarning
 from sebody.runs.simulation import Simulation
 
 LEAST, MOST = 3, 9      # runs of each

@@ -6,11 +6,11 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 
 from collections.abc import Iterable
 
+from sebody.basics.spelling import unknown
 from sebody.catalogue import kernel_files, product_files
 from sebody.contract.names import ELEMENT, MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
-from sebody.spelling import unknown
 from sebody.verify.check.body_contacts import check_body_contact
 from sebody.verify.check.body_loads import check_body_load
 from sebody.verify.check.elements import check_element

@@ -5,8 +5,8 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.contract.layout import MOTION, OK, RESIDUAL
-from sebody.errors import InputError
 from sebody.verify.check.definitions import frame_rotation, local_coordinates
 from sebody.verify.check.states import (
     STATES,

@@ -5,10 +5,10 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
 from sebody.contract.counts import whole_vectors
 from sebody.contract.layout import ALONG, PREPARE, RESIDUAL, TANGENT, TRANSPOSED
 from sebody.contract.names import PRODUCTS, SUPERELEMENT
-from sebody.errors import InputError
 from sebody.kernels.abi import Arguments
 from sebody.kernels.loader import load
 from sebody.verify.check.body_loads import body_load_case

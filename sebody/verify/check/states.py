@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import (
     bound_counts,
@@ -32,7 +33,6 @@ from sebody.contract.layout import (
     TANGENT,
     Row,
 )
-from sebody.errors import InputError
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.abi import Arguments, call_kernel
 

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.vectors import cross
 from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.coordinates import nodal
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.model.parts import Node
 from sebody.reduction import ReducedBody
-from sebody.vectors import cross
 
 FORCES = ("force", "moment", "reaction", "torque", "thrust", "multipliers", "forces")
 TURNING = ("moment", "torque")

@@ -1,0 +1,95 @@
+"""What a user runs: simulations, equilibria, small motion about a state, restarts."""
+
+from typing import TYPE_CHECKING
+
+from sebody.basics.lazy import load_on_demand
+
+if TYPE_CHECKING:
+    from sebody.explore.advice import Advice, Unreached, advise
+    from sebody.explore.ensembles import (
+        Ensemble,
+        Outcome,
+        Output,
+        at_time,
+        final,
+        integral,
+        maximum,
+        minimum,
+        rms,
+        soft_maximum,
+    )
+    from sebody.gradients.calibration import Calibration, calibrate
+    from sebody.gradients.contributions import contributions
+    from sebody.gradients.designs import Design, sections
+    from sebody.gradients.functions import ValueAndGradient
+    from sebody.gradients.gradient import Gradient, gradient
+    from sebody.gradients.height_stresses import BeamStress
+    from sebody.gradients.many import Gradients, gradients
+    from sebody.gradients.ranking import Contribution, Contributions
+    from sebody.gradients.sizing import Sizing, size_heights
+    from sebody.runs.limits.watch import spin_limit
+    from sebody.runs.restart import resume, save_state
+    from sebody.runs.statics import equilibrium
+    from sebody.small_motion.campbell import Campbell, campbell
+    from sebody.small_motion.energy_gain import EnergyGain, energy_gain
+    from sebody.small_motion.frequency import FrequencyResponse, frequency_response
+    from sebody.small_motion.linearization import (
+        Linearization,
+        Modes,
+        Vibrations,
+        linearize,
+        modes,
+        vibrations,
+    )
+    from sebody.small_motion.state_space import StateSpace, state_space
+
+__all__ = [
+    "Advice",
+    "BeamStress",
+    "Calibration",
+    "Campbell",
+    "Contribution",
+    "Contributions",
+    "Design",
+    "EnergyGain",
+    "Ensemble",
+    "FrequencyResponse",
+    "Gradient",
+    "Gradients",
+    "Linearization",
+    "Modes",
+    "Outcome",
+    "Output",
+    "Sizing",
+    "StateSpace",
+    "Unreached",
+    "ValueAndGradient",
+    "Vibrations",
+    "advise",
+    "at_time",
+    "calibrate",
+    "campbell",
+    "contributions",
+    "energy_gain",
+    "equilibrium",
+    "final",
+    "frequency_response",
+    "gradient",
+    "gradients",
+    "integral",
+    "linearize",
+    "maximum",
+    "minimum",
+    "modes",
+    "resume",
+    "rms",
+    "save_state",
+    "sections",
+    "size_heights",
+    "soft_maximum",
+    "spin_limit",
+    "state_space",
+    "vibrations",
+]
+
+load_on_demand(__name__)

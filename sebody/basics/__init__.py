@@ -1,0 +1,1 @@
+"""Helpers without mechanics, for all folders: errors, checks of input, files, units, words."""

@@ -1,0 +1,50 @@
+"""Names that nothing has: the exception, with those that were perhaps meant."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from sebody.basics.errors import InputError
+from sebody.basics.inputs import shown
+
+MOST = 40           # names that a message lists
+ALIKE = 0.6         # of two names, so that one may have been meant for the other
+
+
+def unknown(what: str, name: object, known: Iterable[str], have: str = "there are",
+            none: str = "there is none") -> InputError:
+    """The exception for a name that nothing has.
+
+    Parameters
+    ----------
+    what : str
+        What it should be the name of.
+    known : iterable of str
+        Names there are: those alike are shown, all if there are none.
+    have, none : str
+        Words before all names, and in place of them.
+    """
+    return InputError(f"{what} {shown(name)} is unknown: {offered(name, known, have, none)}")
+
+
+def offered(name: object, known: Iterable[str], have: str = "there are",
+            none: str = "there is none") -> str:
+    """Names that were perhaps meant, else all there are; see `unknown`."""
+    known = list(dict.fromkeys(known))
+    if near := alike(name, known):
+        return f"did you mean {' or '.join(map(repr, near))}?"
+    if not known:
+        return none
+    listed = known if not any(set(one) & set(" ,'") for one in known) else [
+        repr(one) for one in known]
+    more = len(known) - MOST
+    return f"{have} {', '.join(listed[:MOST])}" + (f" and {more} more" if more > 0 else "")
+
+
+def alike(name: object, known: Iterable[str], most: int = 3, cutoff: float = ALIKE) -> list[str]:
+    """Names that are like another one, the most alike first, in whatever case."""
+    if not isinstance(name, str):
+        return []
+    by_lower: dict[str, str] = {}
+    for one in known:
+        by_lower.setdefault(one.lower(), one)
+    return [by_lower[one] for one in get_close_matches(name.lower(), by_lower, most, cutoff)]
