@@ -47,18 +47,28 @@ def fe_matrix(value: object, name: str) -> sparse.csc_array:
 
 
 def _check_symmetry(matrix: sparse.csc_array, name: str) -> None:
-    """Refuse entries that differ across the diagonal, relative to its entries in their rows."""
-    defect = sparse.coo_array(matrix - matrix.T)
-    if not defect.nnz:
-        return
-    diagonal = np.sqrt(np.abs(matrix.diagonal()))
-    allowed = SYMMETRY_LIMIT * diagonal[defect.row] * diagonal[defect.col]
-    k = int(np.argmax(np.abs(defect.data) - allowed))
-    if abs(defect.data[k]) > allowed[k]:
-        i, j = int(defect.row[k]), int(defect.col[k])
+    """Refuse entries that differ across the diagonal."""
+    unlike = unsymmetric_entry(matrix)
+    if unlike is not None:
+        i, j = unlike
         raise InputError(f"{name} is not symmetric: {name}[{i}, {j}] = {matrix[i, j]:.6g} but "
                          f"{name}[{j}, {i}] = {matrix[j, i]:.6g}: export both triangles or mirror "
                          "one")
+
+
+def unsymmetric_entry(matrix: sparse.csc_array) -> tuple[int, int] | None:
+    """Row and column of the entry that differs most from that across the diagonal.
+
+    Differences are relative to the diagonal entries of both rows; None where all are rounding.
+    """
+    defect = sparse.coo_array(matrix - matrix.T)
+    if not defect.nnz:
+        return None
+    diagonal = np.sqrt(np.abs(matrix.diagonal()))
+    allowed = SYMMETRY_LIMIT * diagonal[defect.row] * diagonal[defect.col]
+    k = int(np.argmax(np.abs(defect.data) - allowed))
+    over = abs(defect.data[k]) > allowed[k]
+    return (int(defect.row[k]), int(defect.col[k])) if over else None
 
 
 def assemble(element_dofs: NDArray, element_matrices: NDArray, size: int) -> sparse.csc_array:

@@ -15,6 +15,7 @@ from sebody.basics.files.reading import existing
 from sebody.fem.model import FEModel
 from sebody.io.reading import Reading
 from sebody.io.reduced import NAMES
+from sebody.io.triplets import WrongEntry, symmetric
 
 _REMEDY = "write file.full of a free model (WRFULL or a modal analysis), and file.rst or file.cdb"
 _NO_MATERIAL = ("materials are not read from files of Ansys; give the FE model of read_fe_model "
@@ -68,20 +69,18 @@ def full_matrices(path: Path) -> tuple[np.ndarray, sparse.csc_array, sparse.csc_
         if rows.size and max(rows.max(), columns.max()) >= size:
             raise InputError(f"{path} is damaged (an entry in row {max(rows.max(), columns.max())} "
                              f"of {size}): {_REMEDY}")
-        matrices.append(sparse.csc_array((values, (rows, columns)), shape=(size, size)))
+        try:
+            matrices.append(symmetric(rows, columns, values, size))
+        except WrongEntry as error:
+            k = error.entry
+            raise InputError(f"{path} is damaged (entry ({rows[k] + 1}, {columns[k] + 1}) of the "
+                             f"{name} {error}): {_REMEDY}") from error
     wrong = (reference[:, 1] > 5) | (reference[:, 1] < 0)
     if wrong.any():
         row = int(np.argmax(wrong))
         raise InputError(f"{path}: DOF {reference[row, 1]} of node {reference[row, 0]} is not "
                          "mechanical: leave out temperatures, pressures and Lagrange multipliers")
-    return reference, *map(_whole, matrices)
-
-
-def _whole(triangle: sparse.spmatrix) -> sparse.csc_array:
-    """Both triangles of a symmetric matrix, of which the reader gives one."""
-    matrix = sparse.csc_array(triangle)
-    return sparse.csc_array(matrix + sparse.triu(matrix, 1).T if not sparse.tril(matrix, -1).nnz
-                            else matrix)
+    return reference, *matrices
 
 
 def _mesh(path: Path) -> dict[str, np.ndarray]:

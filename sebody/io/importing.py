@@ -13,15 +13,16 @@ from sebody.basics.files import check_target
 from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
+from sebody.io.damping import with_damping
 from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
 from sebody.io.registry import naming, read_source
+from sebody.io.rigid import rigid_residual
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.methods import reduce
-from sebody.reduction.rigid_motions import rigid_motions
 from sebody.reduction.watch import SILENT, Watch, watching
 
 
@@ -165,31 +166,7 @@ def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     if modal:
         keeps = {label: one.keeps for label, one in zip(labels, interfaces, strict=False)}
         chosen = [keeps.get(label) or reading.model.keeps(label) for label in labels]
-        return BodyFile(reading.model.with_boundary(labels, chosen), names, units, provenance)
+        parts, notes = with_damping(reading.model.with_boundary(labels, chosen), "De", ())
+        return BodyFile(parts, names, units, {**provenance, **notes})
     return chosen_interfaces(BodyFile(reading.model, reading.names, units, provenance), labels,
                              names)
-
-
-def rigid_residual(model: FEModel) -> float:
-    """Largest force of a row under rigid motion, over what its entries would make without signs.
-
-    Rounding of d printed digits leaves some ``10^-d``; a support leaves one.
-    """
-    count, dimension = model.coordinates.shape
-    present = model.rows >= 0
-    turning = present.shape[1] > dimension
-    keeps = ("full" if turning else "translation",) * count
-    middle = model.coordinates.mean(axis=0)
-    by_kinds = rigid_motions(model.coordinates, keeps, present.size, middle)
-    moves, turns = np.split(by_kinds, [count * dimension])
-    by_nodes = np.concatenate([part.reshape(count, -1, by_kinds.shape[1])
-                               for part in (moves, turns)], axis=1)
-    motions = np.zeros((len(model.stiffness.indptr) - 1, by_kinds.shape[1]))
-    motions[model.rows[present]] = by_nodes[present]
-    # lengths over the size of the body: rotations of nodes and their displacements are alike
-    size = np.ones(len(motions))
-    size[model.rows[:, :dimension][present[:, :dimension]]] = model.extent or 1.0
-    forces = np.abs(model.stiffness @ motions)
-    largest = np.max(np.abs(motions) / size[:, None], axis=0)
-    without_signs = (abs(model.stiffness) @ size)[:, None] * largest
-    return float(np.max(forces / np.maximum(without_signs, 1e-300), initial=0.0))

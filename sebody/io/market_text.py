@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.basics import inputs
-from sebody.io.triplets import symmetric
+from sebody.io.triplets import WrongEntry, symmetric
 
 _WORDS = {"layout": ("coordinate", "array"), "numbers": ("real", "integer", "double"),
           "symmetry": ("general", "symmetric")}
@@ -48,8 +48,19 @@ class Market(NamedTuple):
         rows, columns, values = (self._by_columns(values) if self.entries is None else
                                  self._with_places(values))
         if self.symmetric:
+            return self._whole(rows, columns, values)
+        matrix = sparse.csc_array(sparse.coo_array((values, (rows, columns)), shape=self.shape))
+        if matrix.nnz < len(values):
+            self._whole(rows, columns, values)
+        return matrix
+
+    def _whole(self, rows: NDArray, columns: NDArray, values: NDArray) -> sparse.csc_array:
+        try:
             return symmetric(rows, columns, values, self.shape[0])
-        return sparse.csc_array(sparse.coo_array((values, (rows, columns)), shape=self.shape))
+        except WrongEntry as error:
+            k = error.entry
+            raise ValueError(f"entry {k + 1}, ({rows[k] + 1}, {columns[k] + 1}), {error}"
+                             ) from error
 
     def _by_columns(self, values: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         columns, rows = np.indices(self.shape[::-1]).reshape(2, -1)

@@ -27,12 +27,13 @@ class ModalNode(NamedTuple):
 
 
 class ModalBody(NamedTuple):
-    """Mass and stiffness (6 + nq, 6 + nq) of rigid motions about the origin, then of modes."""
+    """Matrices (6 + nq, 6 + nq) of rigid motions about the origin, then of modes."""
 
     mass: NDArray
     stiffness: NDArray
     nodes: list[ModalNode]
     source: str
+    damping: NDArray | None = None
 
     def keeps(self, label: str) -> str:
         """Triplets that a node has."""
@@ -111,5 +112,6 @@ class ModalBody(NamedTuple):
         count = static.shape[1]
         stiffness[:count, count:] = stiffness[count:, :count].T * 0.0
         stiffness[count:, :count] = 0.0         # zero but for rounding
-        return {"stiffness": stiffness, "mass": basis.T @ M @ basis, "coordinates": points,
-                "keeps": keeps, "modes": inner.shape[1]}
+        damping = {} if self.damping is None else {"damping": basis.T @ self.damping @ basis}
+        return {"stiffness": stiffness, "mass": basis.T @ M @ basis, **damping,
+                "coordinates": points, "keeps": keeps, "modes": inner.shape[1]}

@@ -9,13 +9,14 @@ import warnings
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.basics.files.reading import called, existing
+from sebody.io.damping import with_damping
 from sebody.io.reading import Reading
 from sebody.io.reduced import reduced_parts
 from sebody.io.text import read_text
@@ -34,7 +35,8 @@ def read_op4(path: Path) -> Reading:
     """
     matrices = _called(lambda: _nastran().op4.read(str(path), into="dct", justmatrix=True), path)
     matrices = {name.lower(): matrix for name, matrix in matrices.items()}
-    stiffness, mass = _pair(matrices, path)
+    found = _set(matrices, path)
+    stiffness = found.matrices["stiffness"]
     cards = _beside(path)
     table = _uset(cards)
     told = len(table.index)
@@ -46,7 +48,7 @@ def read_op4(path: Path) -> Reading:
     if told != len(stiffness):
         raise InputError(f"{path} has {len(stiffness)} rows and {cards} lists {told}: give "
                          "files of one run")
-    return _reading(stiffness, mass, list(table.index), table, path)
+    return _reading(found, list(table.index), table, path)
 
 
 def read_dmig(path: Path) -> Reading:
@@ -58,16 +60,66 @@ def read_dmig(path: Path) -> Reading:
         As for `read_op4`.
     """
     matrices = _called(lambda: _nastran().rddmig(str(path), square=True), path)
+    if path.suffix == ".pch":
+        _check_once(path)
     frames = {name.lower(): frame for name, frame in matrices.items()}
-    stiffness, mass = _pair({name: frame.values for name, frame in frames.items()}, path)
-    indices = [list(frame.index) for frame in frames.values() if frame.shape == stiffness.shape]
-    if indices[0] != indices[1]:
-        raise InputError(f"{path}: stiffness and mass are of different DOFs: {_REMEDY}")
+    square = {name: frame for name, frame in frames.items() if frame.index.equals(frame.columns)}
+    # rows of zeros are not written, so that of rotations without inertia only the stiffness has any
+    rows = sorted({key for frame in square.values() for key in frame.index})
+    found = _set({name: frame.reindex(index=rows, columns=rows, fill_value=0.0).to_numpy()
+                  for name, frame in square.items()}, path)
     own = path.suffix == ".pch" and "GRID" in read_text(path, "punch file", _REMEDY)
-    return _reading(stiffness, mass, indices[0], _grids(path if own else _beside(path)), path)
+    return _reading(found, rows, _grids(path if own else _beside(path)), path)
 
 
-def _reading(stiffness: NDArray, mass: NDArray, index: list, table: Any, path: Path) -> Reading:
+def _check_once(path: Path) -> None:
+    """Refuse an entry that occurs twice, of symmetric matrices also across the diagonal.
+
+    Nastran stops at such cards; of what pyyeti reads the last one counts.
+    """
+    cards = _called(lambda: _nastran().rdcards(str(path), name="dmig", return_var="list", blank=""),
+                    path)
+    seen: set[tuple] = set()
+    symmetric: dict[str, bool] = {}
+    for card in cards:
+        name = str(card[0]).upper()
+        if name not in symmetric or card[1] == 0:
+            symmetric[name] = card[2] == 6
+            continue
+        column = tuple(card[1:3])
+        for row in zip(card[4::4], card[5::4], strict=False):
+            pair = tuple(sorted((row, column))) if symmetric[name] else (row, column)
+            if (name, *pair) in seen:
+                raise InputError(
+                    f"{path}: DMIG {name} has the entry of {_dof(*row)} and {_dof(*column)} twice"
+                    + ", once on either side of the diagonal" * symmetric[name]
+                    + ": write each entry of a symmetric matrix (form 6) once, or form 1")
+            seen.add((name, *pair))
+
+
+def _dof(node: int, direction: int) -> str:
+    return f"DOF {direction} of node {node}" if direction else f"scalar point {node}"
+
+
+class Found(NamedTuple):
+    """Matrices of a superelement.
+
+    Parameters
+    ----------
+    matrices : dict of (n, n)
+        'stiffness', 'mass' and, if there is one, 'damping'.
+    damping : str
+        What the file calls the last.
+    structural : tuple of str
+        What it calls structural damping.
+    """
+
+    matrices: dict[str, NDArray]
+    damping: str
+    structural: tuple[str, ...]
+
+
+def _reading(found: Found, index: list, table: Any, path: Path) -> Reading:
     """A body from rows by (id, DOF), DOF 0 of scalar points, in output coordinate systems."""
     points, turns = _nodes(table, path)
     rows = [None if dof == 0 else (int(node), int(dof) - 1) for node, dof in index]
@@ -81,9 +133,10 @@ def _reading(stiffness: NDArray, mass: NDArray, index: list, table: Any, path: P
             rows_of_node = [place.get((node, first + k)) for k in range(3)]
             if None not in rows_of_node:
                 turn[np.ix_(rows_of_node, rows_of_node)] = axes       # output from basic components
-    parts, names = reduced_parts(turn.T @ stiffness @ turn, turn.T @ mass @ turn, rows, points,
-                                 str(path))
-    return Reading(parts, names, source=f"Nastran {path.name}")
+    turned = {name: turn.T @ matrix @ turn for name, matrix in found.matrices.items()}
+    parts, names = reduced_parts(turned, rows, points, str(path))
+    parts, notes = with_damping(parts, found.damping, found.structural)
+    return Reading(parts, names, source=f"Nastran {path.name}", notes=notes)
 
 
 def _nodes(table: Any, path: Path) -> tuple[dict[int, NDArray], dict[int, NDArray]]:
@@ -129,15 +182,28 @@ def _beside(path: Path) -> Path:
                      f"{path.with_suffix('.asm')}, which EXTSEOUT(ASMBULK) writes")
 
 
-def _pair(found: dict[str, NDArray], path: Path) -> tuple[NDArray, NDArray]:
-    """Stiffness and mass: the matrices K... and M... with otherwise equal names."""
-    for name, matrix in found.items():
-        other = found.get("m" + name[1:])
-        if name.startswith("k") and other is not None:
-            if matrix.shape != other.shape or matrix.shape[0] != matrix.shape[1]:
-                raise InputError(f"{path}: {name} has shape {matrix.shape} and m{name[1:]} "
-                                 f"{other.shape}: {_REMEDY}")
-            return np.asarray(matrix, dtype=float), np.asarray(other, dtype=float)
+def _set(found: dict[str, NDArray], path: Path) -> Found:
+    """Stiffness and mass, the matrices K... and M... with otherwise equal names, and B... and K4...
+    """
+    for name, stiffness in found.items():
+        ending = name[1:]
+        if not name.startswith("k") or "m" + ending not in found:
+            continue
+        called = {"stiffness": name, "mass": "m" + ending, "damping": "b" + ending}
+        matrices = {what: found[own] for what, own in called.items() if own in found}
+        for what, matrix in matrices.items():
+            if matrix.shape != stiffness.shape or matrix.shape[0] != matrix.shape[1]:
+                raise InputError(f"{path}: {name} has shape {stiffness.shape} and {called[what]} "
+                                 f"{matrix.shape}: {_REMEDY}")
+            if what != "stiffness" and np.any(np.imag(matrix)):
+                raise InputError(f"{path}: {called[what]} is complex: write real matrices")
+        own = "k4" + ending
+        structural = [own.upper()] if np.any(found.get(own, 0)) else []
+        if np.any(np.imag(stiffness)):
+            structural.append(f"the imaginary part of {name.upper()}")
+        return Found({what: np.asarray(np.real(matrix), dtype=float)
+                      for what, matrix in matrices.items()}, called["damping"].upper(),
+                     tuple(structural))
     have = ", ".join(found) or "none"
     raise InputError(f"{path} has no pair of matrices KXX and MXX, or KAAX and MAAX; it has "
                      f"{have}: {_REMEDY}")

@@ -11,13 +11,14 @@ from sebody.io.body_file import BodyFile
 NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
-def reduced_parts(stiffness: NDArray, mass: NDArray, rows: Sequence[tuple[int, int] | None],
+def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int] | None],
                   points: Mapping[int, NDArray], source: str) -> tuple[dict, tuple[str, ...]]:
     """Arguments of a `ReducedBody`, and its nodes' labels as names.
 
     Parameters
     ----------
-    stiffness, mass : (n, n)
+    matrices : mapping of (n, n) by name
+        'stiffness', 'mass' and, if there is one, 'damping'.
     rows : sequence of (label, direction) or None
         Of every row: node and direction, 0 to 2 translations, 3 to 5 rotations; None for a mode.
     points : dict of (3,) by label
@@ -44,7 +45,7 @@ def reduced_parts(stiffness: NDArray, mass: NDArray, rows: Sequence[tuple[int, i
     modes = [i for i, row in enumerate(rows) if row is None]
     order += modes
     chosen = np.ix_(order, order)
-    return {"stiffness": stiffness[chosen], "mass": mass[chosen],
+    return {**{name: matrix[chosen] for name, matrix in matrices.items()},
             "coordinates": np.array([points[label] for label in labels], dtype=float),
             "keeps": tuple(keeps), "modes": len(modes)}, tuple(map(str, labels))
 

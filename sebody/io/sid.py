@@ -21,15 +21,18 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.linalg import LinAlgError, eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target, replacing
+from sebody.fem.matrices import unsymmetric_entry
 from sebody.io.body_file import checked_names
 from sebody.io.modal import ModalBody, ModalNode
 from sebody.io.reading import Reading
 from sebody.io.text import fault, read_text
+from sebody.io.triplets import WrongEntry, symmetric
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.rigid_motions import rigid_motions
 
@@ -38,6 +41,10 @@ _REMEDY = "give a file that begins with 'part' and 'new modal', as FEMBS and seb
 _INERTIA = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 _SPINS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 _DIGITS = 16
+_FRAMES = ("part", "refmod", "frame", "end refmod", "end frame", "end modal", "end part")
+_OUTSIDE = re.compile(r"new modal|nelastq|ielastq\s*\(\s*\d+\s*\)|rframe")
+_ENTRY = re.compile(r"m([01])\s*\(([\s\d,]+)\)")
+_SYMMETRIC = ("Me", "Ke", "De")
 
 
 def write_sid(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None) -> Path:
@@ -221,20 +228,36 @@ def _modal(path: Path, found: dict[str, NDArray], nodes: list[ModalNode]) -> Mod
     moment = rigid_motions(found["mdCM"].T, ("translation",), 3, np.zeros(3))[:, 3:]
     M = np.block([[mass * np.eye(3), moment, found["Ct"].T], [moment.T, J, found["Cr"].T],
                   [found["Ct"], found["Cr"], found["Me"]]])
-    K = np.zeros_like(M)
-    K[6:, 6:] = (found["Ke"] + found["Ke"].T) / 2
-    return ModalBody((M + M.T) / 2, K, nodes, str(path))
+    K, D = np.zeros_like(M), np.zeros_like(M)
+    K[6:, 6:] = found["Ke"]
+    damping = found.get("De", np.zeros((nq, nq)))
+    if damping.shape != (nq, nq):
+        raise InputError(f"SID file {path}: De has shape {damping.shape}, its {nq} modes need "
+                         f"({nq}, {nq}): {_REMEDY}")
+    D[6:, 6:] = damping
+    return ModalBody((M + M.T) / 2, K, nodes, str(path), D)
 
 
 def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
-    """Node or None, name and M0 of every matrix; the mass of the body as ``mass``."""
-    node, block, sizes, entries = None, None, {}, []
+    """Node or None, name and M0 of every matrix; the mass of the body as ``mass``.
+
+    Every line counts: a matrix with one entry less is another body.
+    """
+    node, block = None, None
     lines = read_text(path, "SID file", _REMEDY).splitlines()
     most = 9 * len(lines)       # every mode has a line of its own, and no matrix is longer
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(lines[1:], 2):        # the first one is a title
         words = line.strip()
         key, equals, value = (part.strip() for part in words.partition("="))
-        if key == "new node":
+        if not words:
+            continue
+        if block:
+            if words == f"end {block.name}":
+                yield node, block.name, block.matrix()
+                block = None
+            else:
+                block.take(number, key, value if equals else None, most)
+        elif key == "new node":
             node = value
         elif words == "end node":
             node = None
@@ -243,33 +266,71 @@ def _blocks(path: Path) -> Iterator[tuple[str | None, str, NDArray]]:
             if mass <= 0:
                 raise fault(path, number, f"the mass is {mass:g}", "give the body a density")
             yield None, "mass", np.array([[mass]])
-        elif words in _NAMES:
-            block, sizes, entries = words, {}, []
-        elif block and words == f"end {block}":
-            yield node, block, _matrix(path, number, sizes, entries)
-            block = None
-        elif block and re.fullmatch(r"m0\s*\(\s*\d+\s*,\s*\d+\s*\)", key):
-            i, j = map(int, re.findall(r"\d+", key[2:]))
-            entries.append((i, j, _value(path, number, value)))
-        elif block and key in ("nrow", "ncol", "structure"):
-            sizes[key] = _size(path, number, key, value, most)
-    if block:
-        raise InputError(f"SID file {path} ends within {block}: it is cut off, write it again")
-
-
-def _matrix(path: Path, number: int, sizes: dict[str, int], entries: list) -> NDArray:
-    """M0: its structure is 0 zero, 1 diagonal, 2 symmetric, 3 full, 4 the unit matrix."""
-    shape = sizes.get("nrow", 0), sizes.get("ncol", 0)
-    matrix = np.eye(*shape) if sizes.get("structure") == 4 else np.zeros(shape)
-    for i, j, value in entries:
-        if not (1 <= i <= shape[0] and 1 <= j <= shape[1]):
-            raise fault(path, number, f"m0({i}, {j}) is not within {shape[0]} x {shape[1]}",
+        elif re.fullmatch(r"[A-Za-z]\w*", words) and words not in _FRAMES:
+            block = _Block(path, words, number)
+        elif words not in _FRAMES and not (equals and _OUTSIDE.fullmatch(key)):
+            raise fault(path, number, f"{inputs.shown(words)} belongs to no matrix",
                         "write the file again")
-        matrix[i - 1, j - 1] = value
-    if sizes.get("structure") == 2:
-        upper, lower = np.triu(matrix, 1), np.tril(matrix, -1)
-        matrix += (upper.T if not lower.any() else 0) + (lower.T if not upper.any() else 0)
-    return matrix
+    if block:
+        raise InputError(f"SID file {path} ends within {block.name}: it is cut off, write it again")
+
+
+class _Block:
+    """One matrix as its lines come."""
+
+    def __init__(self, path: Path, name: str, begun: int):
+        self.name = name
+        self._path, self._begun = path, begun
+        self._sizes: dict[str, int] = {}
+        self._entries: dict[tuple[int, ...], tuple[int, float]] = {}    # line and value
+
+    def take(self, number: int, key: str, value: str | None, most: int) -> None:
+        """A line ``key = value``, or one without."""
+        entry = _ENTRY.fullmatch(key)
+        if value is not None and key in ("nrow", "ncol", "structure"):
+            self._sizes[key] = _size(self._path, number, key, value, most)
+        elif value is not None and entry:
+            at = tuple(map(int, re.findall(r"\d+", entry[2])))
+            found = _value(self._path, number, value)
+            if entry[1] == "0" and self._entries.setdefault(at, (number, found))[0] != number:
+                raise fault(self._path, number, f"m0{at} of {self.name} occurs twice",
+                            "write the file again")
+        elif value is None or key not in ("order", "nq", "nqn"):
+            raise fault(self._path, number, f"{inputs.shown(key)} is no entry of {self.name}, "
+                        f"which begins in line {self._begun}", "write the file again")
+
+    def matrix(self) -> NDArray:
+        """M0: its structure is 0 zero, 1 diagonal, 2 symmetric, 3 full, 4 the unit matrix."""
+        shape = self._sizes.get("nrow", 0), self._sizes.get("ncol", 0)
+        structure = self._sizes.get("structure")
+        for at, (number, _) in self._entries.items():
+            if not (len(at) == 2 and 1 <= at[0] <= shape[0] and 1 <= at[1] <= shape[1]):
+                raise fault(self._path, number, f"m0{at} is not within {shape[0]} x {shape[1]}",
+                            "write the file again")
+        matrix = np.eye(*shape) if structure == 4 else np.zeros(shape)
+        for (i, j), (_, value) in self._entries.items():
+            matrix[i - 1, j - 1] = value
+        if structure != 2 and self.name not in _SYMMETRIC:
+            return matrix
+        if shape[0] != shape[1]:
+            raise fault(self._path, self._begun, f"{self.name} is symmetric and has the shape "
+                        f"{shape}", "write the file again")
+        lines = np.array([number for number, _ in self._entries.values()], dtype=int)
+        places = np.array(list(self._entries), dtype=int).reshape(-1, 2) - 1
+        if structure == 2:
+            values = np.array([value for _, value in self._entries.values()])
+            try:
+                return symmetric(*places.T, values, shape[0]).toarray()
+            except WrongEntry as error:
+                raise fault(self._path, int(lines[error.entry]), f"an entry of {self.name} {error}",
+                            "write the file again") from error
+        unlike = unsymmetric_entry(sparse.csc_array(matrix))
+        if unlike is not None:
+            i, j = unlike
+            raise fault(self._path, self._begun, f"{self.name} is not symmetric, m0({i + 1}, "
+                        f"{j + 1}) is {matrix[i, j]:.6g} and m0({j + 1}, {i + 1}) "
+                        f"{matrix[j, i]:.6g}", "write the file again")
+        return (matrix + matrix.T) / 2
 
 
 def _size(path: Path, number: int, key: str, text: str, most: int) -> int:
@@ -289,7 +350,3 @@ def _value(path: Path, number: int, text: str) -> float:
     if not np.isfinite(value):
         raise fault(path, number, f"{text!r} is not finite", "write the file again")
     return value
-
-
-_NAMES = {"origin", "phi", "psi", "AP", "sigma", "mdCM", "J", "Ct", "Cr", "Me", "Gr", "Ge", "Oe",
-          "ksigma", "Ke", "De"}

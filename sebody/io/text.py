@@ -10,6 +10,8 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files.reading import text as read_text
 
+_BLOCK = 1 << 20        # bytes
+
 
 def fault(path: Path, line: int, what: str, remedy: str) -> InputError:
     """The exception for a line that cannot be used; lines count from 1."""
@@ -25,6 +27,9 @@ def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:
         The file cannot be read, is empty, ends within a line, or has another line, which the
         message names.
     """
+    rows = regular_table(path, columns)
+    if rows is not None:
+        return rows
     text = read_text(path, what, remedy)
     values = text.replace("D", "E").replace("d", "e").split()
     try:
@@ -39,6 +44,28 @@ def table(path: Path, columns: int, what: str, remedy: str) -> NDArray:
     if not text.endswith("\n"):
         raise fault(path, len(text.splitlines()), "the file ends within a line", remedy)
     return rows.reshape(-1, columns)
+
+
+def regular_table(path: Path, columns: int, delimiter: str | None = None) -> NDArray | None:
+    """The rows (n, columns) of a file of plain numbers alone, read without its text in memory.
+
+    None of a file in which anything is unusual: a line without these columns, an exponent with D, a
+    comment, an end within a line. Then the file is to be read line by line.
+    """
+    if not path.is_file():
+        return None
+    try:
+        with path.open("rb") as stream:
+            lines, last = 0, b""
+            while block := stream.read(_BLOCK):
+                lines, last = lines + block.count(b"\n"), block[-1:]
+        if last != b"\n":
+            return None
+        rows = np.loadtxt(path, comments=None, ndmin=2, delimiter=delimiter)
+    except (OSError, ValueError):
+        return None
+    regular = rows.shape == (lines, columns) and np.isfinite(rows).all()
+    return rows if regular else None
 
 
 def _worst_line(path: Path, text: str, columns: int, remedy: str) -> InputError:

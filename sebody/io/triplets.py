@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.basics.errors import InputError
+from sebody.fem.matrices import unsymmetric_entry
 from sebody.io.text import fault, table, whole
 
 
@@ -56,9 +57,58 @@ def _check_entries(path: Path, rows: NDArray, columns: NDArray, size: int, remed
                          f"cut off or of another run: {remedy}")
 
 
+class WrongEntry(ValueError):
+    """An entry that a symmetric matrix cannot have beside the others.
+
+    Parameters
+    ----------
+    message : str
+    entry : int
+        Its number, from 0.
+    """
+
+    def __init__(self, message: str, entry: int):
+        super().__init__(message)
+        self.entry = entry
+
+
 def symmetric(rows: NDArray, columns: NDArray, values: NDArray, size: int) -> sparse.csc_array:
-    """A matrix from the entries of one triangle, counted from 0."""
-    off = rows != columns
-    entries = np.concatenate([values, values[off]])
-    places = (np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]]))
-    return sparse.csc_array(sparse.coo_array((entries, places), shape=(size, size)))
+    """A matrix from the entries of one triangle, or of both, counted from 0.
+
+    If any two entries are mirror images of each other, both triangles are there: they are to be
+    equal, as `fe_matrix` compares them, and entries left out are zero. Else each entry stands for
+    its mirror image, on whichever side of the diagonal it is.
+
+    Raises
+    ------
+    WrongEntry
+        A place that occurs twice, or an entry unlike its mirror image.
+    """
+    matrix = sparse.csc_array(sparse.coo_array((values, (rows, columns)), shape=(size, size)))
+    if matrix.nnz < len(values):
+        places = rows.astype(np.int64) * size + columns
+        order = np.argsort(places, kind="stable")
+        entry = int(order[1:][np.diff(places[order]) == 0].min())
+        raise WrongEntry("occurs twice", entry)
+    if not _overlap(rows, columns, size):
+        return sparse.csc_array(matrix + matrix.T - sparse.diags_array(matrix.diagonal()))
+    unlike = unsymmetric_entry(matrix)
+    if unlike is None:
+        return sparse.csc_array((matrix + matrix.T) / 2)
+    there = ((rows == unlike[0]) & (columns == unlike[1])
+             | (rows == unlike[1]) & (columns == unlike[0]))
+    entry = int(np.flatnonzero(there)[-1])
+    i, j = int(rows[entry]), int(columns[entry])
+    raise WrongEntry(f"is {matrix[i, j]:.6g} here and {matrix[j, i]:.6g} across the diagonal",
+                     entry)
+
+
+def _overlap(rows: NDArray, columns: NDArray, size: int) -> bool:
+    """Whether any two places are mirror images."""
+    above, below = rows < columns, rows > columns
+    if not (above.any() and below.any()):
+        return False
+    off = above | below
+    pattern = sparse.csc_array((np.ones(off.sum(), dtype=np.int8), (rows[off], columns[off])),
+                               shape=(size, size))
+    return bool(pattern.multiply(pattern.T).nnz)

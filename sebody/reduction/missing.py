@@ -1,4 +1,4 @@
-"""What a body lacks, and why: stresses, stiffening by stresses, exact inertia.
+"""What a body lacks, and why: stresses, stiffening by stresses, exact inertia, damping.
 
 Every reason is a text ``why; what to do``.
 """
@@ -9,7 +9,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.fem.model import FEModel
 
-WHAT = ("stresses", "stiffening", "exact inertia")
+WHAT = ("stresses", "stiffening", "exact inertia", "damping", "structural damping")
 _REDUCED = ("the body was made without it, such as of reduced matrices alone; import or reduce the "
             "FE model with its mesh and materials")
 _OF_MODEL = {
@@ -26,8 +26,7 @@ def missing_of(fe_model: FEModel, method: str) -> dict[str, str]:
     has = {"stresses": bool(fe_model.stress),
            "stiffening": fe_model.geometric_stiffness is not None,
            "exact inertia": fe_model.mass_field is not None}
-    reasons = {what: fe_model.missing.get(what, _OF_MODEL[what]) for what in WHAT
-               if not has[what] or what in fe_model.missing}
+    reasons = {what: _OF_MODEL[what] for what in has if not has[what]} | dict(fe_model.missing)
     if method == "macneal":
         reasons |= dict.fromkeys(("stiffening", "exact inertia"), _MACNEAL)
     elif not has["exact inertia"]:

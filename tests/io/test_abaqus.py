@@ -5,6 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from malformed import fe_files
+from scipy import sparse
 
 from sebody import InputError
 from sebody.explore.inspection import inspect
@@ -89,7 +91,8 @@ def test_an_unsymmetric_one_is_refused(tmp_path):
 DECK = "*NODE\n7, 0., 0., 0.\n9, 2., 0., 0.\n8, 2., 1., 0.\n*NSET, NSET=ENDS\n7, 9\n"
 
 
-def generated(folder, mass=None):
+def entries_of_springs():
+    """Stiffness of three springs by node, direction, node, direction: both triangles."""
     pairs = [(7, 9), (9, 8), (8, 7)]
     points = {7: (0, 0, 0), 9: (2, 0, 0), 8: (2, 1, 0)}
     entries = {}
@@ -101,6 +104,11 @@ def generated(folder, mass=None):
                 for k in range(3):
                     key = (one, i + 1, two, k + 1)
                     entries[key] = entries.get(key, 0.0) + sign * block[i, k]
+    return points, entries
+
+
+def generated(folder, mass=None):
+    points, entries = entries_of_springs()
     lower = [f"{a},{i}, {b},{k}, {v:.15e}" for (a, i, b, k), v in entries.items()
              if (b, k) <= (a, i)]
     (folder / "job_STIF1.mtx").write_text("\n".join(lower) + "\n")
@@ -120,3 +128,80 @@ def test_generated_matrices(tmp_path):
     (tmp_path / "job_MASS1.mtx").write_text("7,1, 7,1, 1.0e36\n")
     with pytest.raises(InputError, match=r"MASS1\.mtx, line 1: node 7, DOF 1, is fixed"):
         read_fe_model(tmp_path / "job_STIF1.mtx")
+
+
+def test_both_triangles_are_not_added(tmp_path):
+    """Matrices with both triangles are those with one; a difference between them is refused."""
+    one = read_fe_model(generated(tmp_path))
+    _, entries = entries_of_springs()
+    lines = [f"{a},{i}, {b},{k}, {v:.15e}\n" for (a, i, b, k), v in entries.items()]
+    path = tmp_path / "job_STIF1.mtx"
+    path.write_text("".join(lines))
+    both = read_fe_model(path)
+    np.testing.assert_array_equal(both.stiffness.toarray(), one.stiffness.toarray())
+    k = next(k for k, (a, i, b, j) in enumerate(entries) if (b, j) < (a, i) and "-5" in lines[k])
+    path.write_text("".join([*lines[:k], lines[k].replace("-5", "-4"), *lines[k + 1:]]))
+    with pytest.raises(InputError, match=r"STIF1\.mtx, line \d+: entry 9, 1, 7, 1 is -[45] here "
+                                         "and -[45] across the diagonal: the file is damaged"):
+        read_fe_model(path)
+    path.write_text("".join([*lines, lines[3]]))
+    with pytest.raises(InputError, match=f"line {len(lines) + 1}: entry 7, 2, 7, 1 occurs twice"):
+        read_fe_model(path)
+
+
+@pytest.mark.parametrize("both", [False, True])
+def test_rows_by_number(tmp_path, both):
+    """FORMAT=COORDINATE numbers the rows of the nodes in the order of their labels."""
+    by_label = read_fe_model(generated(tmp_path))
+    for kind, matrix in (("STIF", by_label.stiffness), ("MASS", by_label.mass)):
+        entries = sparse.coo_array(matrix if both else sparse.tril(matrix))
+        (tmp_path / f"job_{kind}1.mtx").write_text("".join(
+            f" {i + 1}, {j + 1}, {x:.15e}\n" for i, j, x in
+            zip(entries.row, entries.col, entries.data, strict=True)))
+    model = read_fe_model(tmp_path / "job_STIF1.mtx")
+    assert (model.stiffness != by_label.stiffness).nnz == 0
+    np.testing.assert_array_equal(model.rows, by_label.rows)
+    # nodes whose order is not that of the rows: rigid motion tells
+    (tmp_path / "job.inp").write_text(DECK.replace("7,", "70,").replace("8,", "88,"))
+    with pytest.raises(InputError, match="rows are in another order, or the body is held: write it "
+                                         "with .*FORMAT=LABELS"):
+        read_fe_model(tmp_path / "job_STIF1.mtx")
+    (tmp_path / "job.inp").write_text(DECK + "*NODE\n10, 5., 5., 5.\n")
+    with pytest.raises(InputError, match="has 9 rows, and .* 4 nodes at its elements, of 3"):
+        read_fe_model(tmp_path / "job_STIF1.mtx")
+
+
+def test_damping_of_full_matrices_is_a_caution(tmp_path):
+    path = generated(tmp_path)
+    (tmp_path / "job_DMPV1.mtx").write_text("7,1, 7,1, 1.0\n")
+    assert read_fe_model(path).missing["damping"].startswith("job_DMPV1.mtx is not reduced; ")
+
+
+def damped_beam(folder, damping, kind="VISCOUS DAMPING"):
+    """The substructure of the malformed tests with a damping."""
+    path = fe_files.substructure(folder)
+    lines = [f" {', '.join(f'{x:.14E}' for x in row[:i + 1])}" for i, row in enumerate(damping)]
+    path.write_text("\n".join([path.read_text() + f"*MATRIX,TYPE={kind}", *lines]) + "\n")
+    return import_body(path)
+
+
+def test_damping_of_substructures(tmp_path):
+    stiffness, mass = fe_files.two_nodes()
+    body = damped_beam(tmp_path, 0.01 * stiffness)
+    np.testing.assert_allclose(body.damping, 0.01 * body.stiffness, rtol=1e-14)
+    assert not any("damping" in caution for caution in body.cautions)
+    body = damped_beam(tmp_path, 0.01 * stiffness + mass)
+    assert body.damping is None
+    said = "no damping: *MATRIX, TYPE=VISCOUSDAMPING is not that of a free body: damping resists"
+    assert any(caution.startswith(said) for caution in body.cautions)
+    body = damped_beam(tmp_path, 0.01 * stiffness, "STRUCTURAL DAMPING")
+    assert any(caution.startswith("no structural damping: STRUCTURALDAMPING has no equation of "
+                                  "motion in time; give") for caution in body.cautions)
+
+
+def test_a_matrix_that_comes_twice(tmp_path):
+    path = fe_files.substructure(tmp_path)
+    text = path.read_text()
+    path.write_text(text + text[text.index("*MATRIX,TYPE=MASS"):])
+    with pytest.raises(InputError, match=r"line 33: \*MATRIX, TYPE=MASS occurs twice, first"):
+        import_body(path)

@@ -28,3 +28,16 @@ def test_other_ways_to_write_numbers():
     np.testing.assert_array_equal(parsed(text).matrix().toarray(), [[15, 7, 0], [0, 0, -0.25]])
     text = "%%MatrixMarket matrix coordinate integer symmetric\n2 2 2\n2 1 3\n2 2 5\n"
     np.testing.assert_array_equal(parsed(text).matrix().toarray(), [[0, 3], [3, 5]])
+
+
+def test_both_triangles_of_what_is_called_symmetric():
+    """Entries are taken once, and refused where they contradict one another or come twice."""
+    head = "%%MatrixMarket matrix coordinate real symmetric\n2 2 4\n"
+    text = head + "1 1 4\n2 1 3\n1 2 3\n2 2 5\n"
+    np.testing.assert_array_equal(parsed(text).matrix().toarray(), [[4, 3], [3, 5]])
+    with pytest.raises(ValueError, match=r"entry 3, \(1, 2\), is [37] here and [37] across the"):
+        parsed(text.replace("1 2 3", "1 2 7")).matrix()
+    with pytest.raises(ValueError, match=r"entry 3, \(2, 1\), occurs twice"):
+        parsed(text.replace("1 2 3", "2 1 3")).matrix()
+    with pytest.raises(ValueError, match=r"entry 3, \(2, 1\), occurs twice"):
+        parsed(text.replace("1 2 3", "2 1 3").replace("symmetric", "general")).matrix()

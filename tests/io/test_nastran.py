@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from malformed import fe_files
 from scipy.linalg import eigh
 
 from sebody import InputError
@@ -99,3 +100,61 @@ def test_the_format_of_another_file(tmp_path, name, kind, said):
     (tmp_path / name).write_text("*NODE\n1, 0, 0, 0\n")
     with pytest.raises(InputError, match=said):
         import_body(tmp_path / name, kind=kind)
+
+
+def dmig(path, **matrices):
+    """DMIG cards of the unit beam between nodes 4 and 7, without entries that are zero."""
+    pairs = [(node, k) for node in (4, 7) for k in range(1, 7)]
+    lines = ["GRID           4              0.      0.      0.",
+             "GRID           7              1.      0.      0."]
+    for name, matrix in matrices.items():
+        lines.append(f"DMIG    {name:8}{0:8d}{6:8d}{2:8d}{0:8d}{'':24}{12:8d}")
+        for j, (node, k) in enumerate(pairs):
+            own = [(pairs[i], matrix[i, j]) for i in range(j, 12) if matrix[i, j]]
+            if own:
+                lines.append(f"DMIG*   {name:16}{'':8}{node:8d}{k:16d}")
+                lines += [f"*       {row[0]:16d}{row[1]:16d}{x:16.8E}" for row, x in own]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_damping(tmp_path):
+    """Viscous damping is read, structural damping named; inertia may lack rows of the stiffness."""
+    K, M = fe_files.two_nodes()
+    M[3:6, 3:6] = M[9:, 9:] = 0.0
+    path = dmig(tmp_path / "se.pch", KAAX=K, MAAX=M, BAAX=0.01 * K, K4AAX=0.02 * K)
+    body = import_body(path)
+    np.testing.assert_allclose(body.damping, 0.01 * body.stiffness, rtol=1e-12)
+    assert body.keeps == ("full", "full") and body.mass[6:, 6:].max() == 0
+    assert any("no structural damping: K4AAX has no equation of motion in time" in caution
+               for caution in body.cautions)
+    body = import_body(dmig(path, KAAX=K, MAAX=M, BAAX=M))
+    assert body.damping is None
+    said = "no damping: BAAX is not that of a free body: damping resists rigid motion"
+    assert any(said in caution for caution in body.cautions)
+
+
+def test_damping_in_op4(tmp_path):
+    """Turned and put in order as the stiffness is."""
+    matrices = op4.read(str(DATA / "beam.op4"), into="dct", justmatrix=True)
+    name = next(name for name in matrices if name.lower().startswith("k"))
+    path = tmp_path / "beam.op4"
+    op4.write(str(path), {**matrices, f"b{name[1:]}": 0.01 * matrices[name]})
+    path.with_suffix(".asm").write_bytes((DATA / "beam.asm").read_bytes())
+    body = import_body(path, {"tip": 2, "root": 1})
+    np.testing.assert_allclose(body.damping, 0.01 * body.stiffness,
+                               atol=1e-12 * np.abs(body.stiffness).max())
+
+
+def test_entries_that_come_twice(tmp_path):
+    """Of both triangles of a symmetric matrix the last one would count, in silence."""
+    K, M = fe_files.two_nodes()
+    path = dmig(tmp_path / "se.pch", KAAX=K, MAAX=M)
+    lines = path.read_text().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith("DMIG") and "MAAX" in line)
+    lines[start:start] = [f"DMIG*   {'KAAX':16}{'':8}{7:8d}{1:16d}",
+                          f"*       {4:16d}{1:16d}{-2.0:16.8E}"]
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(InputError, match="DMIG KAAX has the entry of DOF 1 of node 4 and DOF 1 of "
+                                         "node 7 twice, once on either side"):
+        import_body(path)

@@ -199,3 +199,43 @@ def test_bodies_that_have_no_sid(tmp_path):
         write_sid(body, tmp_path / "body.SID_FEM")
     with pytest.raises(InputError, match="must end in .SID_FEM"):
         write_sid(body, tmp_path / "body.txt")
+
+
+def damped_rates(body):
+    """Decay of the free vibrations, from the lowest up."""
+    n, zero = len(body.mass), np.zeros_like(body.mass)
+    state = np.block([[zero, np.eye(n)], [-np.linalg.solve(body.mass, body.stiffness),
+                                          -np.linalg.solve(body.mass, body.damping)]])
+    found = np.linalg.eigvals(state)
+    return np.sort(-found.real[found.imag > 1e-3])
+
+
+def test_damping_comes_back(tmp_path):
+    body = reduced(model_of(False)).damped(0.02)
+    path = write_sid(body, tmp_path / "damped.SID_FEM")
+    again = import_body(path, {"a": "1", "b": "2", "c": "3:translation"})
+    assert len(damped_rates(body)) == len(body.mass) - 6
+    np.testing.assert_allclose(damped_rates(again), damped_rates(body), rtol=1e-6)
+
+
+def test_triangles_of_a_symmetric_matrix(tmp_path):
+    """Structure 2 is one triangle, or both where these agree; none is halved or doubled."""
+    path = write_sid(reduced(model_of(False)), tmp_path / "body.SID_FEM")
+    text = path.read_text()
+    start, stop = text.index("    Me\n"), text.index("    end Me\n")
+    count = int(re.search(r"nrow = (\d+)", text[start:stop])[1])
+
+    def mass(structure, *entries):
+        lines = ["Me", "order = 0", f"nrow = {count}", f"ncol = {count}",
+                 f"structure = {structure}"]
+        lines += [f"m0({i}, {i}) = 1.0D0" for i in range(1, count + 1)]
+        path.write_text(text[:start] + "\n".join([*lines, *entries]) + "\n" + text[stop:])
+        return read(path).model.mass[6:, 6:]
+
+    lower, upper = "m0(2, 1) = 0.1", "m0(1, 2) = 0.1"
+    whole = mass(3, lower, upper)
+    assert whole[0, 1] == whole[1, 0] == 0.1
+    for entries in ([lower], [upper], [lower, upper]):
+        np.testing.assert_array_equal(mass(2, *entries), whole)
+    with pytest.raises(InputError, match="an entry of Me is 0.[12] here and 0.[12] across the"):
+        mass(2, lower, "m0(1, 2) = 0.2")
