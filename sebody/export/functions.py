@@ -14,10 +14,10 @@ from sebody.compiler.decorators import function_code, kernel_code
 from sebody.compiler.sources import function_hash, kernel_hash
 from sebody.compiler.workers import Task
 from sebody.engine import control, loop, matrix, restart, row_exchanges
-from sebody.export import quantities
 from sebody.export.outputs import no_outputs
 from sebody.export.platforms import environment, tag
 from sebody.kernels.loader import load
+from sebody.quantities import reading
 from sebody.runs.first_run import examples
 
 KIND = "code"
@@ -28,7 +28,7 @@ FUNCTIONS = {
     "restart": (restart.restart, "system state number flag"),
     "sample": (control.sample, "system state"),
     "set_input": (control.set_input, "system state whole number"),
-    "evaluate": (quantities.evaluate, "system state outputs"),
+    "evaluate": (reading.evaluate, "system state outputs"),
     "exchange": (row_exchanges.exchange, "system state exchanges"),
 }
 

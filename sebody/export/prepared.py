@@ -25,10 +25,10 @@ from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.outputs import Quantities
-from sebody.export.quantities import Outputs
 from sebody.kernels.loader import element_kernel_name
 from sebody.model.control_order import sampled
 from sebody.model.model import Model
+from sebody.quantities.reading import Reading
 from sebody.results.result import Result
 from sebody.results.units import unit
 from sebody.runs.simulation import Simulation
@@ -62,7 +62,7 @@ class Prepared:
     inputs : list of Input
     names, units : list of str
         Of outputs, which are numbers.
-    outputs : Outputs
+    outputs : Reading
         These, then what sensors measure that the loop cannot read.
     sensors : list of (int, Sensor)
         These sensors and their numbers.
@@ -97,7 +97,7 @@ class Prepared:
         kinds = self.system.control.channels[:, 0]
         self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.memory.sensors)
                         if kinds[k] == OUTSIDE]
-        self.outputs: Outputs = quantities.made(self.names, [s for _, s in self.sensors])
+        self.outputs: Reading = quantities.made(self.names, [s for _, s in self.sensors])
         units = parsed_units(made.units)
         self.units = [unit(one, units) for one in self.names]
         self.exchanges = Exchanges.of(self._numbering.free, self.system.rows.size)
@@ -126,10 +126,10 @@ class Prepared:
     def _image(self, kinds: list[int]) -> Image:
         system, state = self.system, self.run.state
         outputs = self.outputs
-        changing = [*members(state), outputs.values, outputs.row, outputs.loads, outputs.sums,
-                    outputs.moved, outputs.residues, outputs.frames, outputs.work, system.corners,
-                    system.jumps, system.table_times, system.table_pieces,
-                    system.control.parameters]
+        changing = [*members(state), outputs.values, outputs.numbers, outputs.row,
+                    outputs.loads, outputs.sums, outputs.moved, outputs.residues,
+                    outputs.frames, outputs.work, system.corners, system.jumps,
+                    system.table_times, system.table_pieces, system.control.parameters]
         changing += [system.constants] * (PARAMETER in kinds)
         changing += members(self.exchanges)
         state.work[:] = 0.0

@@ -17,7 +17,8 @@ from sebody.fem.stress import von_mises
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.sensors import Evaluated, Rows, Sensor
-from sebody.results.field_quantities import FENodes, fe_node
+from sebody.quantities.inside import FENodes
+from sebody.results.field_quantities import fe_node
 from sebody.results.naming import NORM, STRESS, look_up, split
 from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from sebody.model.parts import Element
 from sebody.pictures.surface import spatial
+from sebody.results.histories import histories
 from sebody.results.result import Result
 
 KINDS = {"position": "force", "rotation": "torque"}
@@ -50,7 +51,7 @@ def _resultant(result: Result, load: Element, states: NDArray) -> Arrow:
 
 
 def _on(result: Result, load: Element, node, kind: str, states: NDArray) -> NDArray:
-    values = result.balance.on(load, node, kind)[states]
+    values = histories(result).on(load, node, kind)[states]
     if values.shape[1] == 1:                    # a moment in a plane
         return np.pad(values, ((0, 0), (2, 0)))
     return spatial(values)

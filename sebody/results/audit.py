@@ -5,13 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import record_counts, rotational
+from sebody.assembly.numbering import record_counts, rotational, stretch
 from sebody.basics.vectors import moment_of
 from sebody.contract.layout import ENERGIES
 from sebody.model.extent import extent
 from sebody.model.parts import Element, Node, Superelement
+from sebody.quantities import forces
 from sebody.results import energy_balance
-from sebody.results import force_quantities as forces
+from sebody.results.histories import histories
 from sebody.results.recording import Recording
 
 DRIFT = 1e-5        # constraints, of the model's size or rad: a thousand times a step's tolerance
@@ -134,12 +135,13 @@ def _acting(result: Recording) -> tuple[NDArray, NDArray]:
         own, arm = _mass(body)
         mass, first = mass + own, first + arm
         for place in body.attachments:
-            values = -result.balance.on(body, *place)
+            values = -histories(result).on(body, *place)
             if place.kind == "rotation":
                 moment += values
             else:
                 total += values
-                moment += moment_of(result.balance.position(place.node), values)
+                moment += moment_of(result.recorded("q")[:, stretch(
+                    result.numbering, place.dof_block)], values)
     weight = mass * model.gravity_field
     # the first moment of mass moves on with the momentum
     moved = first + _integral(result.recorded("t")[:, 0],

@@ -75,7 +75,7 @@ class HotSpots(tuple):
     def _table(self) -> tuple[list[str], list[list[str]]]:
         dimension = len(self[0].place) if self else 3
         heads = ["node", *(with_unit(label, name, self.units) for label, name in (
-            ("von Mises", ".von_mises"), ("time", ".t"))),
+            ("von Mises", ".von_mises"), ("time", "t"))),
             *(with_unit(axis, ".position", self.units) for axis in "xyz"[:dimension]),
             *(with_unit(name, ".stress", self.units) for name in COMPONENTS)]
         rows = [[str(one.node), *(f"{value:.6g}" for value in (one.von_mises, one.t)),

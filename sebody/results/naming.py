@@ -1,7 +1,7 @@
 """The grammar of quantities, in one place: the meaning of ``tip.position.y`` everywhere.
 
 =======================  =========================================================================
-``tip.position``         a quantity, by the tables of `sebody.results.owners`
+``tip.position``         a quantity, by the table of `sebody.quantities.table`
 ``tip.position.y``       a component: x, y, z of vectors, xx, xy, ... of rotation matrices and
                          stresses, 0, 1, ... of everything else
 ``tip.position.norm``    the length of a vector
@@ -10,8 +10,9 @@
 =======================  =========================================================================
 """
 
+from collections.abc import Sequence
 from itertools import product
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import alike
+from sebody.quantities.table import OWNERS, find
 from sebody.results import quantities, rotations
 from sebody.results.recording import Recording
 
@@ -27,8 +29,7 @@ STRESS = "xx", "yy", "zz", "yz", "zx", "xy"
 GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
                      "energy.external_work"),
           "constraints": ("constraints.position", "constraints.velocity")}
-# whose columns are no directions
-NUMBERED = "modes", "mode_rates", "multipliers", "forces", "states"
+NUMBERED = {name for owner in OWNERS for name, row in owner.quantities.items() if row.numbered}
 SMALL_ANGLE = 1e-6      # rad: below, the axis of a rotation is that of the state before
 
 
@@ -92,9 +93,9 @@ def split(recording: Recording, name: str) -> tuple[str, list[str]]:
     inputs.name(name, "name of a quantity")
     whole = name
     components: list[str] = []
-    while whole not in GROUPS and quantities.find(recording, whole) is None:
+    while whole not in GROUPS and find(recording, whole) is None:
         before, _, last = whole.rpartition(".")
-        if not before or not (_may_be_component(last) or quantities.find(recording, before)):
+        if not before or not (_may_be_component(last) or find(recording, before)):
             raise _unknown(recording, name, whole, components)
         whole, components = before, [last, *components]
     return whole, components
@@ -109,22 +110,34 @@ def component_of(name: str, history: NDArray, component: str) -> NDArray:
         There is none of this name.
     """
     if history.ndim == 1:
-        raise InputError(f"{name}.{component} is unknown: {name} is one number, it has no "
-                         "components")
+        refuse_component(name, component)
     if _is_rotation(history) and component in (*AXES, NORM):
         return component_of(name, rotation_vectors(history), component)
     if component == NORM:
         return np.sqrt((history**2).reshape(len(history), -1).sum(axis=1))
+    labels = labels_of(history.shape[1:], name)
+    if component not in labels:
+        refuse_component(name, component, labels)
     if _is_rotation(history):
         history = history.reshape(len(history), -1)
-        labels = [*map("".join, product(AXES, AXES))]
-    else:
-        labels = _labels(history.shape[1], name, history.ndim > 2)
-    if component not in labels:
-        known = [*(AXES if len(labels) == 9 and labels[0] == "xx" else ()), *labels, NORM]
-        raise InputError(f"{name}.{component} is unknown: {name} has the components "
-                         f"{', '.join(known)}")
     return history[:, labels.index(component)]
+
+
+def labels_of(shape: tuple[int, ...], name: str) -> list[str]:
+    """Components of a quantity of a shape in a state: of a matrix its rows, of a rotation all."""
+    if shape == (3, 3):
+        return [*map("".join, product(AXES, AXES))]
+    return _labels(shape[0], name, len(shape) > 1)
+
+
+def refuse_component(name: str, component: str, labels: Sequence[str] = ()) -> NoReturn:
+    """Refuse a component that a quantity does not have."""
+    if not labels:
+        raise InputError(f"{name}.{component} is unknown: {name} is one number, it has no "
+                         "components")
+    known = [*(AXES if len(labels) == 9 and labels[0] == "xx" else ()), *labels, NORM]
+    raise InputError(f"{name}.{component} is unknown: {name} has the components "
+                     f"{', '.join(known)}")
 
 
 def component_names(history: NDArray, name: str = "") -> list[str]:
@@ -133,8 +146,8 @@ def component_names(history: NDArray, name: str = "") -> list[str]:
         return [""]
     if _is_rotation(history):
         return [*map("".join, product(AXES, AXES))]
-    first, *inner = history.shape[1:]
-    labels = [_labels(first, name, bool(inner)), *(map(str, range(size)) for size in inner)]
+    _, *inner = history.shape[1:]
+    labels = [labels_of(history.shape[1:], name), *(map(str, range(size)) for size in inner)]
     return [*map(".".join, product(*labels))]
 
 

@@ -16,7 +16,6 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 from sebody.model.summary import summary
-from sebody.results.balance import Balance
 from sebody.results.energy_balance import energy_balance
 from sebody.results.least_norm import least_norm
 from sebody.results.postprocessing import (
@@ -52,6 +51,7 @@ class Recording:
     error: float | None = None      # estimate over allowed error: see sebody.runs.accuracy
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
+    numbers: Any = field(default=None, init=False, repr=False)  # see sebody.results.histories
 
     def __repr__(self) -> str:
         t, kind = self.recorded("t")[:, 0], type(self).__name__
@@ -110,12 +110,6 @@ class Recording:
     def forces(self) -> Forces:
         """Forces in every recorded state."""
         return forces(*self.arrays_of_loop, self.unique_rows)
-
-    @cached_property
-    def balance(self) -> Balance:
-        """Forces on the nodes in every recorded state."""
-        return Balance(self.model, self.numbering, self.forces.elements, self.recorded("q"),
-                       self.recorded("R"))
 
     @cached_property
     def powers(self) -> NDArray:

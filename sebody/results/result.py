@@ -16,7 +16,7 @@ from sebody.model.summary import table
 from sebody.results import dataframes, naming, quantities
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
-from sebody.results.contact_quantities import normal_forces
+from sebody.results.contact_states import normal_forces
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.hot_spots import HotSpots, hot_spots

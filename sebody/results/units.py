@@ -1,21 +1,10 @@
 """Units of quantities: in words, or by name where the model has units."""
 
 from sebody.basics.units import Units
+from sebody.quantities.table import OF_MODEL, OWNERS
 
-OF_QUANTITY = {
-    "t": "time", "position": "length", "displacement": "length", "velocity": "length/time",
-    "acceleration": "length/time^2", "rotation": "rotation matrix, in a plane rad",
-    "angular_velocity": "rad/time", "angular_acceleration": "rad/time^2",
-    "reaction": "force", "force": "force", "local_force": "force", "thrust": "force",
-    "reaction_moment": "force length", "moment": "force length", "local_moment": "force length",
-    "torque": "force length", "power": "force length/time", "work": "force length",
-    "section_forces": "force, from the fourth on force length",
-    "stress": "force/length^2", "von_mises": "force/length^2",
-}
-OF_MODEL = {
-    "momentum": "mass length/time", "angular_momentum": "mass length^2/time",
-    "constraints.position": "length", "constraints.velocity": "length/time",
-}
+OF_QUANTITY = {name: row.unit for owner in OWNERS for name, row in owner.quantities.items()
+               if row.unit}
 
 
 def unit(name: str, units: Units | None = None) -> str:
@@ -35,7 +24,7 @@ def _words(name: str) -> str:
     whole, _, last = name.rpartition(".")
     if name == "energy" or whole == "energy":
         return "force length"
-    known = OF_MODEL.get(name) or OF_QUANTITY.get(last)
+    known = OF_MODEL[name].unit if name in OF_MODEL else OF_QUANTITY.get(last)
     if known is not None or not whole:
         return known or ""
     if whole.endswith(".rotation") and last in ("x", "y", "z", "norm"):

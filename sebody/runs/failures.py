@@ -11,7 +11,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.model.model import Model
-from sebody.results.contact_quantities import states
+from sebody.results.contact_states import states
 from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction
 

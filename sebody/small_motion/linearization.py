@@ -14,7 +14,7 @@ from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief
-from sebody.results.contact_quantities import states
+from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.limits.watch import Watch

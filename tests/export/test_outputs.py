@@ -8,9 +8,9 @@ from exported_models import TURN, H, arm
 from sebody import InputError, Model, Simulation
 from sebody.catalogue import builder
 from sebody.export.outputs import Quantities
-from sebody.export.quantities import evaluate
 from sebody.fem import hexahedral_block, rectangle, straight_beam
 from sebody.fem.loads import pressure
+from sebody.quantities.reading import evaluate
 from sebody.reduction import RigidFace, craig_bampton
 
 E, NU, RHO = 2.1e9, 0.3, 1200.0

@@ -14,8 +14,8 @@ from scipy import sparse
 from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha, simulate
 from sebody.analysis import equilibrium, resume, save_state, vibrations
 from sebody.fem import FEModel, Section, frame, hexahedral_block, straight_beam
+from sebody.quantities.table import OF_MODEL
 from sebody.reduction import ReducedBody, craig_bampton
-from sebody.results.owners import OF_MODEL
 
 ACCEPTED = {
     "point of integers": lambda m: m.node("new", [1, 2, 3]),

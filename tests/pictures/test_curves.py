@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
 from sebody.pictures.curves import panels
+from sebody.quantities.table import OF_MODEL
 from sebody.results.naming import rotation_vectors, values
-from sebody.results.owners import OF_MODEL
 from sebody.results.quantities import names
 from sebody.scenes import heavy_top, hinged_beam, squeezer
 

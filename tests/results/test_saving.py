@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Result, SimulationError, simulate
 from sebody.assembly.build import build
+from sebody.quantities.table import OF_MODEL, OWNERS
 from sebody.results import save_picture
 from sebody.results.description import described, restored
-from sebody.results.owners import OF_MODEL, OWNERS
 from sebody.scenes import chain, four_bar, heavy_top, hinged_beam, squeezer
 
 

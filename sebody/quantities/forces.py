@@ -1,0 +1,126 @@
+"""Formulas of forces, moments and powers of bodies, joints, drives and loads."""
+
+from sebody.basics.errors import InputError
+from sebody.model.parts import Element, Joint, Motion, Node, Superelement
+from sebody.quantities.algebra import back, dot, scaled
+from sebody.quantities.balance import balance
+from sebody.quantities.expressions import Number
+from sebody.quantities.motion import joints
+from sebody.quantities.numbers import Numbers, Parts
+
+
+def bodies(of: Parts) -> dict[str, Superelement | Element]:
+    """Superelements and rigid bodies by name."""
+    return of.model.bodies | of.model.rigid_bodies
+
+
+def nodes_of_bodies(of: Parts) -> dict[str, tuple[str, Node]]:
+    """Body and node by ``<body>.<node>``."""
+    return {f"{name}.{place.node.name}": (name, place.node)
+            for name, body in bodies(of).items() for place in body.attachments}
+
+
+def drives(of: Parts) -> dict[str, Joint | Motion]:
+    """Drives by equations, and prescribed motions."""
+    by_name: dict[str, Joint | Motion] = {name: joint for name, joint in joints(of).items()
+                                          if joint.time_function is not None}
+    return by_name | {motion.name: motion for dof_block in of.model.dof_blocks()
+                      for motion in dof_block.motions}
+
+
+def loads(of: Parts) -> dict[str, Element]:
+    """Loads, springs and dampers on nodes."""
+    return {load.name: load for load in of.model.loads
+            if load.attachments and load.law is None}
+
+
+def of_body(of: Numbers, name: str) -> list[Number]:
+    """Forces of everything else on a body: of its places, then on its modes."""
+    body = bodies(of)[name]
+    first = of.numbering.forces_at[body]
+    modes = body.reduced.modes if isinstance(body, Superelement) else 0
+    size = sum(t.start.size for t in (getattr(*place) for place in body.attachments))
+    on_places = [-x for place in body.attachments for x in balance(of).on(body, *place)]
+    return on_places + [of.force(first + size + k) for k in range(modes)]
+
+
+def at_node(of: Numbers, name: str, kind: str) -> object:
+    """Force or moment of everything else on a body at one of its nodes."""
+    body, node = nodes_of_bodies(of)[name]
+    return _flat(of, kind, scaled(-1.0, balance(of).on(bodies(of)[body], node, kind)))
+
+
+def of_joint(of: Numbers, name: str, kind: str) -> object:
+    """Force or moment of a joint on its node, in global axes."""
+    return _flat(of, kind, balance(of).of_joint(joints(of)[name], kind))
+
+
+def in_joint_axes(of: Numbers, name: str, kind: str) -> object:
+    """The same in the axes of the joint."""
+    joint = joints(of)[name]
+    values = balance(of).of_joint(joint, kind)
+    if len(values) == 1:
+        return values[0]
+    return back(balance(of).axes(joint), values)
+
+
+def of_load(of: Numbers, name: str, kind: str) -> object:
+    """Force or moment of a load or spring on its node, the first if it has several."""
+    load = loads(of)[name]
+    if load.point is not None:          # minus that on the node of the surface; it has no moment
+        node, factor = load.attachments[-1].node, -1.0 * (kind == "position")
+    else:
+        node, factor = load.attachments[0].node, 1.0
+    return _flat(of, kind, scaled(factor, balance(of).on(load, node, kind)))
+
+
+def effort(of: Numbers, name: str, what: str) -> Number:
+    """Thrust or torque of a drive along or about its axis: times the rate it is the power."""
+    drive = drives(of)[name]
+    kind = "rotation" if what == "torque" else "position"
+    if kind != driven(drive):
+        other = "thrust" if what == "torque" else "torque"
+        raise InputError(f"drive {name!r} moves a {driven(drive)}: ask for {name}.{other}")
+    if isinstance(drive, Joint):
+        values = balance(of).of_joint(drive, kind)
+        if kind == "rotation" and of.model.planar:
+            return values[0]
+        along = dot(values, [row[0] for row in balance(of).axes(drive)])
+        return -along if kind == "position" else along  # it pushes the other node along the axis
+    dof_block = getattr(*drive.place)
+    first = of.numbering.dof_blocks[dof_block]
+    return dot([of.total(first + k) for k in range(dof_block.start.size)],
+               drive.direction.tolist())
+
+
+def multipliers(of: Numbers, name: str) -> list[Number]:
+    """Multipliers of the equations of a joint."""
+    equations = joints(of)[name].constraints
+    if not equations:
+        raise InputError(f"joint {name!r} has no equations and so no multipliers, since its nodes "
+                         "share coordinates or are fixed; the force on a fixed node is its "
+                         f"reaction, the force of the joint is {name}.force")
+    return [of.multiplier(of.numbering.multipliers[c] + k)
+            for c in equations for k in range(c.multipliers)]
+
+
+def work(of: Numbers, name: str) -> Number:
+    """Work of a power port."""
+    return of.recorded("works", of.numbering.port_names.index(name))
+
+
+def power(of: Numbers, name: str) -> Number:
+    """Power of a power port."""
+    return of.power(of.numbering.port_names.index(name))
+
+
+def driven(drive: Joint | Motion) -> str:
+    """Whether a drive moves a position or a rotation."""
+    if isinstance(drive, Motion):
+        return drive.place.kind
+    return drive.constraints[0].attachments[0].kind
+
+
+def _flat(of: Numbers, kind: str, values: list[Number]) -> object:
+    """Moments in a plane are numbers."""
+    return values[0] if of.model.planar and kind == "rotation" else values
