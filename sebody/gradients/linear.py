@@ -160,6 +160,10 @@ class Linear:
             return Parts(*(self._free(A) for A in (M, C, K)))
         return Parts(*self.followers.reduced(self.state, M, C, K, self.dense))
 
+    def put(self, row: NDArray, end: float, beside: float) -> None:
+        """Make the state of a row, under the loads of a time, that of the arrays."""
+        put_state(self.system, self.state, row, end, beside)
+
     def matrix(self, values: NDArray) -> Matrix:
         """All coordinates, of sums of entries as of `places`."""
         if self.dense:

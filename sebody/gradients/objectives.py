@@ -1,9 +1,7 @@
 """Objectives: their values, and their derivatives by the states of a run.
 
 Values are those of an `Ensemble`. Of each quantity the derivative by a state is needed where the
-objective looks at it: positions, velocities and accelerations of nodes and amplitudes of modes are
-coordinates themselves, anything else is differentiated in the state that is held, forces of
-elements by their exact matrices.
+objective looks at it, by the tape of the quantity: see `followed`.
 """
 
 from __future__ import annotations
@@ -14,25 +12,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
+from sebody.gradients.followed import Followed
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.node_stresses import history_of, node_stress
 from sebody.gradients.segments import Segments
-from sebody.gradients.sensors import Coordinates, Evaluated, Sensor, rotation_vector
+from sebody.gradients.sensors import Evaluated, Sensor, rotation_vector
 from sebody.gradients.sweeps import Bars
-from sebody.model.model import Model
-from sebody.results.naming import AXES, look_up
+from sebody.quantities.symbols import NoTape
+from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 
 SEAM = 1e-6         # of the largest value: a quantity that differs more in a state is another turn
-ANGLES = "rotation", "angular_velocity", "angular_acceleration"     # coordinates in a plane
 EXTREMES = "maximum", "minimum"
 Objectives = Mapping[str, Output] | Sequence[Output] | Output
 
@@ -218,40 +215,19 @@ def labels_of(name: str, shape: tuple[int, ...]) -> list[str]:
 
 
 def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,
-            history: History) -> Sensor:
+              history: History) -> Sensor:
+    """What a quantity is looked at by."""
     if run.system.regularized[0] and ".multipliers" in quantity:
         raise InputError(f"{quantity!r}: the model has redundant constraints, whose multipliers "
                          "are not unique and have no derivative: give force or moment of the joint")
-    found = _coordinates(run.numbering, run.model, quantity)
-    if found is None:
-        if (vector := rotation_vector(run, quantity, linear, history)) is not None:
-            return vector
-        if (stress := node_stress(run, quantity, linear, history)) is not None:
-            return stress
+    if (vector := rotation_vector(run, quantity, linear, history)) is not None:
+        return vector
+    if (stress := node_stress(run, quantity, linear, history)) is not None:
+        return stress
+    try:
+        return Followed(run, quantity, linear, history)
+    except NoTape:
         return Evaluated(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)
-    return Coordinates(*found, linear, history)
-
-
-def _coordinates(numbering: Numbering, model: Model, quantity: str
-                 ) -> tuple[str, list[int]] | None:
-    """What of which coordinates a quantity is, if it is nothing else."""
-    owner, _, what = quantity.rpartition(".")
-    component: int | None = None
-    if what in AXES or what.isdigit():
-        component = AXES.index(what) if what in AXES else int(what)
-        owner, _, what = owner.rpartition(".")
-    node, rates = model.nodes.get(owner), {"position": "q", "velocity": "v", "acceleration": "a"}
-    turns = dict(zip(ANGLES, "qva", strict=True)) if model.planar else {}
-    if node is not None and what in rates and node.position in numbering.dof_blocks:
-        found = coordinates(numbering, node.position)
-    elif node is not None and what in turns and node.rotation in numbering.dof_blocks:
-        rates, found = turns, coordinates(numbering, node.rotation)
-    elif owner in numbering.modes and what == "modes":
-        first = numbering.modes[owner]
-        rates, found = {"modes": "q"}, list(range(first, first + model.bodies[owner].reduced.modes))
-    else:
-        return None
-    return rates[what], found if component is None else found[component:component + 1]
 
 
 def _seeds(name: str, one: Output, t: NDArray, first: int, values: NDArray, value: NDArray

@@ -193,7 +193,7 @@ def _take(system, state, products, vector, row):
             for i in range(width):
                 products.vectors[to + i] = vector[system.g_unknown[first + i]]
             if products.turned[b]:
-                _turn(system, state, products.vectors, to, system.at_index[b]
+                turn(system, state, products.vectors, to, system.at_index[b]
                       + k * system.stride[b], False)
 
 
@@ -206,14 +206,14 @@ def _give(system, state, products, vector, row):
             first = system.at_g[b] + k * width
             to = ROWS * first + row * width
             if products.turned[b]:
-                _turn(system, state, products.vectors, to, system.at_index[b]
+                turn(system, state, products.vectors, to, system.at_index[b]
                       + k * system.stride[b], True)
             for i in range(width):
                 vector[system.g_unknown[first + i]] += products.vectors[to + i]
 
 
 @compiled
-def _turn(system, state, vectors, first, at_index, back):
+def turn(system, state, vectors, first, at_index, back):
     """Positions of an element into axes of its frame, or back to global ones."""
     R = at(pointer_to(state.frames), 9 * system.index[at_index + AT_FRAME])
     p = at(pointer_to(vectors), first)

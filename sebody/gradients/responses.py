@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.gradients.constrained import Change, Sweep
+from sebody.gradients.followed import Followed
 from sebody.gradients.gradient import Differentiated
 from sebody.gradients.objectives import sensor_of
-from sebody.gradients.sensors import Coordinates, RotationVector, put
+from sebody.gradients.sensors import RotationVector, put
 from sebody.gradients.simplifications import Motion
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
@@ -64,7 +65,8 @@ class Response:
 
     def to(self, k: int, event: int, change: Change) -> NDArray:
         """Changes in a recorded state, (..., models)."""
-        if isinstance(self.sensor, Coordinates | RotationVector):
+        if isinstance(self.sensor, RotationVector) or (
+                isinstance(self.sensor, Followed) and self.sensor.kinematic):
             rows = self.sensor.at(k, event)
             found = rows.motion @ change.motion + rows.rates @ change.rates + (
                 rows.seconds @ change.seconds)

@@ -1,14 +1,14 @@
 """Derivatives of quantities by the states of a run."""
 
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.basics.vectors import skew
+from sebody.gradients.followed import Followed, Rows, refuse_kept
 from sebody.gradients.history import History
-from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
 from sebody.kernels.rotations import inverse_tangent_coefficients
 from sebody.results.naming import AXES, NORM, look_up, rotation_vectors
@@ -20,19 +20,9 @@ from sebody.small_motion.moved_states import SMALL, Moves, differences
 PIECE = 64          # motions that are compared at a time
 FINER = 30.0        # factor of the steps of differences from one try to the next
 SMALLEST = 1e-8     # of them, of the characteristic length: rounding is 1e-8 of a derivative then
-MOVED = 1e-3        # change of kept numbers that shows which quantities depend on them
-ROUNDING = 1e-12
 WHOLE = 1e-6        # rad: a rotation that near whole turns has a vector without derivative
 LARGE = 1.0         # rad: from here on closed forms are as exact as series
 CLOSE = 1e-5        # of the largest derivative: differences that agree like this are right
-
-
-class Rows(NamedTuple):
-    """Derivatives of the components of a quantity, (components, n) each."""
-
-    motion: NDArray
-    rates: NDArray
-    seconds: NDArray
 
 
 class Sensor(Protocol):
@@ -44,34 +34,11 @@ class Sensor(Protocol):
 
 def put(linear: Linear, history: History, event: int) -> None:
     """Make the state of an event that of the arrays."""
-    linear.at(history.rows[event], history.ends[event], history.besides[event])
-
-
-class Coordinates:
-    """A quantity whose components are coordinates, their rates or second rates."""
-
-    def __init__(self, what: str, places: list[int], linear: Linear, history: History):
-        self.what, self.places, self.linear, self.history = what, places, linear, history
-        self.follows = places[-1] >= linear.free and bool(linear.followers)
-        self._own = self._of(np.eye(linear.total, linear.free)[places])
-
-    def _of(self, rows: NDArray) -> Rows:
-        none = np.zeros_like(rows)
-        return Rows(*(rows if self.what == name else none for name in "qva"))
-
-    def at(self, k: int, event: int) -> Rows:
-        if not self.follows:
-            return self._own
-        put(self.linear, self.history, event)
-        G, V, W, U = self.linear.followers.motion(self.linear.state, dense=True)
-        none = np.zeros((len(self.places), self.linear.free))
-        operators = {"q": (G,), "v": (V, G), "a": (U, W, G)}[self.what]
-        found = [A[self.places] for A in operators]
-        return Rows(*found, *[none] * (3 - len(found)))
+    linear.put(history.rows[event], history.ends[event], history.besides[event])
 
 
 class Evaluated:
-    """Any quantity, differentiated along all motions that it depends on."""
+    """A quantity without a tape, differentiated along all motions that it depends on."""
 
     def __init__(self, run: Simulation, quantity: str, size: int, linear: Linear,
                  history: History):
@@ -93,27 +60,9 @@ class Evaluated:
             (G.T, none, none), (V.T, G.T, none), (U.T, W.T, G.T))]
         one = Result(self.run.model, self.run.numbering, linear.system, linear.state,
                      linear.state.now[None].copy(), 0.0)
-        self._refuse_kept(one)
+        refuse_kept(self.run, self.quantity)
         found = self._smooth(one, moves, float(self.history.ends[event]))
         return Rows(*(part.T for part in np.split(found, 3)))
-
-    def _refuse_kept(self, one: Result) -> None:
-        """Refuse quantities that depend on what laws keep, such as the force of friction."""
-        places = [place for law in remembering(self.run)
-                  for place in self.run.numbering.memories[law]]
-        if not places:
-            return
-        rows = np.repeat(self.linear.state.now[None], 2, axis=0)
-        for name in ("frames", "frames_old"):
-            kept = rows[1, self.linear.state.recorded_parts[name]]
-            kept[places] = (1.0 + MOVED) * kept[places] + MOVED
-        now, moved = np.asarray(look_up(Recording(
-            one.model, one.numbering, self.linear.system, self.linear.state, rows, 0.0),
-            self.quantity), dtype=float)
-        if not np.allclose(now, moved, ROUNDING, ROUNDING * np.abs(now).max(initial=0.0)):
-            raise InputError(f"quantity {self.quantity!r} depends on what friction or contacts "
-                             "keep from step to step, and has no derivative by a state: give the "
-                             "motion that they act on, or the force of a joint")
 
     def _smooth(self, one: Result, moves: list[NDArray], t: float) -> NDArray:
         """Differences over steps that are so small that smaller ones give the same."""
@@ -150,14 +99,14 @@ class RotationVector:
 
     Parameters
     ----------
-    matrices : Evaluated
+    matrices : Followed
         Of the nine entries of R.
     rotations, vectors : (states, 3, 3), (states, 3)
         R and phi in the recorded states.
     component : str
     """
 
-    def __init__(self, matrices: Evaluated, rotations: NDArray, vectors: NDArray, component: str):
+    def __init__(self, matrices: Followed, rotations: NDArray, vectors: NDArray, component: str):
         self.matrices, self.rotations, self.vectors = matrices, rotations, vectors
         self.component = component
 
@@ -202,7 +151,7 @@ def rotation_vector(run: Simulation, quantity: str, linear: Linear, history: His
     except InputError:      # no quantity of its own
         return None
     matrices = look_up(Recording(*parts, rows, 0.0), base)
-    return RotationVector(Evaluated(run, base, 9, linear, history), matrices[before:],
+    return RotationVector(Followed(run, base, linear, history), matrices[before:],
                           rotation_vectors(matrices)[before:], component)
 
 

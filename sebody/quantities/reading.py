@@ -145,19 +145,33 @@ def evaluate(system, state, reading):
 
     The state stays as it is. Angles continue from the values of the last evaluation.
     """
-    status, needs = OK, reading.needs
-    evaluated = (needs[FORCE] + needs[TOTAL] + needs[ENERGY] + needs[RESIDUE] + needs[LOAD]
-                 + needs[MOTION]) > 0
-    if evaluated:
+    if not _runs_kernels(reading):
+        return evaluate_loaded(system, state, reading)
+    copy(state.loads, reading.loads)
+    set_loads(system, state.frames, state.loads, state.clock.time)
+    status = evaluate_loaded(system, state, reading)
+    copy(reading.loads, state.loads)
+    return status
+
+
+@compiled
+def _runs_kernels(reading):
+    for kind in range(NOW + 1, reading.needs.size):
+        if reading.needs[kind] == 1:
+            return True
+    return False
+
+
+@compiled
+def evaluate_loaded(system, state, reading):
+    """The same of a state whose loads are those of its time."""
+    status = OK
+    if _runs_kernels(reading):
         copy(state.now, reading.row)
-        copy(state.loads, reading.loads)
-        set_loads(system, state.frames, state.loads, state.clock.time)
         status = _run_kernels(system, state, reading)
     for i in range(reading.inputs.shape[0]):
         reading.numbers[reading.inputs[i, 0]] = _number(
             state, reading, reading.inputs[i, 1], reading.inputs[i, 2])
-    if evaluated:
-        copy(reading.loads, state.loads)
     play(reading.steps, reading.factors, reading.weights, reading.numbers)
     for k in range(reading.values.size):
         reading.values[k] = reading.numbers[reading.outputs[k]]

@@ -1,0 +1,283 @@
+"""Exact derivatives of quantities by the states of a run: their tapes, followed backwards.
+
+Bars of a quantity are given to the numbers that its tape reads. Those of forces of elements go to
+the motion by the elements' products with weights, see `products`; those of rotation matrices to
+rotations by ``dR = R skew(theta)``; those of dependent positions to what they follow from.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.assembly.numbering import record_counts
+from sebody.basics.errors import InputError
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import OK, PREPARE, RECORD, TRANSPOSED
+from sebody.gradients.element_products import ROWS, run_element
+from sebody.gradients.history import History
+from sebody.gradients.laws import remembering
+from sebody.gradients.linear import Linear
+from sebody.gradients.link_products import place_weights, pull_back_bars
+from sebody.gradients.products import Products, prepare, turn
+from sebody.quantities.reading import evaluate_loaded, play_back
+from sebody.quantities.symbols import FORCE, LOAD, NOW, TOTAL, NoTape
+from sebody.results.naming import look_up
+from sebody.results.recording import Recording
+from sebody.results.tapes import States
+from sebody.runs.simulation import Simulation
+
+# what a number that is read depends on: a coordinate, its rate or second rate, a rotation matrix, a
+# force of an element, a sum of such forces; nothing
+OF_Q, OF_V, OF_A, OF_R, OF_FORCE, OF_TOTAL, NOTHING = range(7)
+MOVED = 1e-3            # change of kept numbers that shows which quantities depend on them
+ROUNDING = 1e-12
+DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD}
+
+
+class Rows(NamedTuple):
+    """Derivatives of the components of a quantity, (components, n) each."""
+
+    motion: NDArray
+    rates: NDArray
+    seconds: NDArray
+
+
+class Followed:
+    """A quantity with a tape, and its derivatives.
+
+    Parameters
+    ----------
+    run : Simulation
+    quantity : str
+    linear : Linear
+        Of the run.
+    history : History
+
+    Raises
+    ------
+    NoTape
+        A quantity that has no tape, or reads what has no products.
+    """
+
+    def __init__(self, run: Simulation, quantity: str, linear: Linear, history: History):
+        self.run, self.quantity = run, quantity
+        self.linear, self.history = linear, history
+        states = States(run.model, run.numbering, run.system, run.state, history.rows[0])
+        states.put(quantity)
+        kinds = {kind for kind, _ in states.tape.inputs}
+        if not kinds <= DIFFERENTIATED:
+            raise NoTape("energies, residuals and motions inside bodies")
+        self.kinematic = not kinds & {FORCE, TOTAL}
+        self.products: Products | None = None
+        if not self.kinematic:
+            self.products = Products.of(run)
+            if self.products is None:
+                raise NoTape("forces of elements without products")
+        self.reading = states.reading()
+        self.places = _places(run, self.reading.inputs)
+        steady = not states.tape.steps and not linear.followers and np.isin(
+            self.places[:, 0], (OF_Q, OF_V, OF_A)).all()
+        self._same: Rows | None = self._at(0) if steady else None
+
+    def at(self, k: int, event: int) -> Rows:
+        """Derivatives in a recorded state."""
+        return self._same or self._at(event)
+
+    def _at(self, event: int) -> Rows:
+        linear, history = self.linear, self.history
+        linear.put(history.rows[event], history.ends[event], history.besides[event])
+        refuse_kept(self.run, self.quantity)
+        rows = np.zeros((3, len(self.reading.outputs), linear.total))
+        products = self.products
+        status = (_follow(linear.system, linear.state, self.reading, self.places, rows)
+                  if products is None else
+                  _follow_forces(linear.system, linear.state, self.reading, self.places, products,
+                                 rows))
+        if status != OK or not np.isfinite(rows).all():
+            raise InputError(f"quantity {self.quantity!r} has no derivative at t = "
+                             f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
+                             "is not where it is zero: give its components, or another time")
+        return Rows(*rows[:, :, :linear.free])
+
+
+def _places(run: Simulation, inputs: NDArray) -> NDArray:
+    """What each number that is read depends on, and its place there, (inputs, 3).
+
+    Of a rotation matrix the place is the first coordinate of its rotation, then the entry.
+    """
+    numbering = run.numbering
+    slices = RECORD.slices(record_counts(numbering))
+    turns = {k: numbering.dof_blocks[block] for block, k in numbering.rotations.items()}
+    found = np.zeros((len(inputs), 3), dtype=np.int64)
+    for i, (_, kind, place) in enumerate(inputs.tolist()):
+        part = next((name for name, own in slices.items()
+                     if kind == NOW and own.start <= place < own.stop), "")
+        k = place - slices[part].start if part else place
+        if part in ("q", "v", "a"):
+            found[i] = ("q", "v", "a").index(part), k, 0
+        elif part == "R":
+            found[i] = OF_R, turns[k // 9], k
+        elif kind in (FORCE, TOTAL):
+            found[i] = OF_FORCE if kind == FORCE else OF_TOTAL, k, 0
+        else:
+            found[i] = NOTHING, 0, 0
+    return found
+
+
+def refuse_kept(run: Simulation, quantity: str) -> None:
+    """Refuse quantities that depend on what laws keep, such as the force of friction.
+
+    In the state that is held: elsewhere nothing may touch.
+
+    Raises
+    ------
+    InputError
+        The message names the quantity.
+    """
+    places = [place for law in remembering(run) for place in run.numbering.memories[law]]
+    if not places:
+        return
+    state = run.state
+    rows = np.repeat(state.now[None], 2, axis=0)
+    for name in ("frames", "frames_old"):
+        kept = rows[1, state.recorded_parts[name]]
+        kept[places] = (1.0 + MOVED) * kept[places] + MOVED
+    now, moved = np.asarray(look_up(Recording(
+        run.model, run.numbering, run.system, state, rows, 0.0), quantity), dtype=float)
+    if not np.allclose(now, moved, ROUNDING, ROUNDING * np.abs(now).max(initial=0.0)):
+        raise InputError(f"quantity {quantity!r} depends on what friction or contacts "
+                         "keep from step to step, and has no derivative by a state: give the "
+                         "motion that they act on, or the force of a joint")
+
+
+@compiled
+def _bars(system, state, reading, places, c, out):
+    """Bars of one output: those of motions are added to rows (3, total), all are in `numbers`."""
+    bars = np.zeros(reading.numbers.size)
+    bars[reading.outputs[c]] = 1.0
+    play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
+    for i in range(places.shape[0]):
+        bar, kind, place = bars[reading.inputs[i, 0]], places[i, 0], places[i, 1]
+        if kind <= OF_A:
+            out[kind, c, place] += bar
+        elif kind == OF_R and bar != 0.0:
+            first, row, column = 9 * (places[i, 2] // 9), places[i, 2] % 9 // 3, places[i, 2] % 3
+            # of R skew(theta): column j + 1 of R times theta of j + 2, less the other way round
+            one, other = (column + 1) % 3, (column + 2) % 3
+            out[0, c, place + other] += bar * state.R[first + 3 * row + one]
+            out[0, c, place + one] -= bar * state.R[first + 3 * row + other]
+    return bars
+
+
+@compiled
+def _follow(system, state, reading, places, out):
+    """Add the derivatives of all outputs, which depend on motions alone, to rows (3, c, total)."""
+    status = evaluate_loaded(system, state, reading)
+    w = np.zeros(out.shape[2])
+    for c in range(out.shape[1]):
+        _bars(system, state, reading, places, c, out)
+        if system.links.dependent.shape[0] > 0:
+            pull_back_bars(system, state, w, out[:, c])
+    return status
+
+
+@compiled
+def _follow_forces(system, state, reading, places, products, out):
+    """The same of outputs that read forces of elements."""
+    status = evaluate_loaded(system, state, reading)
+    whole = reading.needs[TOTAL] == 1
+    if whole and status == OK:
+        status = prepare(system, state, products)
+    if not whole:
+        for k in range(reading.batches.shape[0]):
+            if status == OK:
+                status = _run(PREPARE, system, state, products, reading.batches, k)
+    if status != OK:
+        return status
+    w = np.zeros(out.shape[2])
+    for c in range(out.shape[1]):
+        bars = _bars(system, state, reading, places, c, out)
+        for i in range(w.size):
+            w[i] = 0.0
+        for i in range(places.shape[0]):
+            if places[i, 0] == OF_TOTAL:
+                w[places[i, 1]] += bars[reading.inputs[i, 0]]
+        if whole and system.links.dependent.shape[0] > 0:
+            place_weights(system, state, w)
+        _weigh(system, state, reading, places, products, bars, w, whole)
+        if whole:
+            for b in range(system.address.size):
+                for k in range(system.count[b]):
+                    _give(system, state, products, b, k, out, c)
+        else:
+            for k in range(reading.batches.shape[0]):
+                _give(system, state, products, reading.batches[k, 0], reading.batches[k, 1], out, c)
+        if system.links.dependent.shape[0] > 0:
+            pull_back_bars(system, state, w, out[:, c])
+    return OK
+
+
+@compiled
+def _weigh(system, state, reading, places, products, bars, w, whole):
+    """Set the weights of the forces of elements: those of sums, and their own."""
+    vectors = products.vectors
+    for k in range(reading.batches.shape[0]):
+        _clear(system, products, reading.batches[k, 0], reading.batches[k, 1])
+    if whole:
+        for b in range(system.address.size):
+            for k in range(system.count[b]):
+                first = system.at_g[b] + k * system.width[b]
+                for i in range(system.width[b]):
+                    vectors[ROWS * first + i] = w[system.g_unknown[first + i]]
+    for i in range(places.shape[0]):
+        if places[i, 0] == OF_FORCE:
+            g = places[i, 1]
+            b = np.searchsorted(system.at_g, g, side="right") - 1
+            width = system.width[b]
+            first = system.at_g[b] + (g - system.at_g[b]) // width * width
+            vectors[ROWS * first + g - first] += bars[reading.inputs[i, 0]]
+
+
+@compiled
+def _clear(system, products, b, k):
+    first = ROWS * (system.at_g[b] + k * system.width[b])
+    for i in range(system.width[b]):
+        products.vectors[first + i] = 0.0
+
+
+@compiled
+def _run(task, system, state, products, batches, k):
+    b, element = batches[k, 0], batches[k, 1]
+    before = 0
+    for i in range(b):
+        before += system.count[i]
+    return run_element(task, b, element, products.at_work[before + element], system, state,
+                       products)
+
+
+@compiled
+def _give(system, state, products, b, k, out, c):
+    """Give the weights of an element to the motion, its rates and second rates."""
+    width, vectors = system.width[b], products.vectors
+    first = system.at_g[b] + k * width
+    at_index = system.at_index[b] + k * system.stride[b]
+    weighted = False
+    for i in range(width):
+        weighted = weighted or vectors[ROWS * first + i] != 0.0
+    if not weighted:
+        return
+    before = 0
+    for i in range(b):
+        before += system.count[i]
+    if products.turned[b]:
+        turn(system, state, vectors, ROWS * first, at_index, False)
+    run_element(TRANSPOSED, b, k, products.at_work[before + k], system, state, products)
+    for r in range(3):
+        row = ROWS * first + (r + 1) * width
+        if products.turned[b]:
+            turn(system, state, vectors, row, at_index, True)
+        for i in range(width):
+            out[r, c, system.g_unknown[first + i]] += vectors[row + i]
