@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
+from sebody.basics.errors import InputError
 from sebody.contract.layout import MOTION as ROW
 from sebody.engine.state import State
 from sebody.engine.system import System
@@ -16,7 +18,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.quantities.algebra import back, dot
 from sebody.quantities.expressions import Number, Tape, root
 from sebody.quantities.reading import Reading, reading
-from sebody.quantities.symbols import MOTION, NoTape, Symbols
+from sebody.quantities.symbols import MOTION, NOW, NoTape, Symbols
 from sebody.quantities.table import find
 from sebody.results import naming, nodal
 from sebody.results.recording import Recording
@@ -72,6 +74,8 @@ class States(Symbols):
             value = [self._whole(one) for one in naming.GROUPS[whole]]
         else:
             value = self._whole(whole)
+        if axes and shape_of(value) != (self.model.dimension,):
+            raise InputError(f"{whole!r} is no vector, which axes turn: leave out axes=")
         if axes:
             value = back(self.rotation(self.model.nodes[axes].rotation), value)
         for component in components:
@@ -85,6 +89,14 @@ class States(Symbols):
         for number in flat(value):
             self.tape.put(number)
         return shape_of(value)
+
+    def places(self) -> NDArray | None:
+        """Places of all outputs in the recorded row, where they are nothing but these."""
+        kinds = {place: key for key, place in self.tape.inputs.items()}
+        found = [kinds.get(place, (-1, 0)) for place in self.tape.outputs]
+        if any(kind != NOW for kind, _ in found):
+            return None
+        return np.array([place for _, place in found], dtype=np.int64)
 
     def reading(self) -> Reading:
         """The arrays of the tape."""

@@ -1,15 +1,15 @@
 """Sensors and controllers of a run, as far as Python has to do with them."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.channels import channel
 from sebody.assembly.numbering import Numbering
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.contract.law_row import DOT, OUTSIDE
+from sebody.contract.law_row import OUTSIDE
 from sebody.engine.control import set_input, set_next
 from sebody.engine.control_data import (
     COUNTS,
@@ -22,12 +22,15 @@ from sebody.engine.system import System
 from sebody.model.control_order import continuous, sampled
 from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.quantities.reading import Reading, evaluate
+from sebody.quantities.symbols import NoTape
+from sebody.results.histories import histories
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
+from sebody.results.tapes import States
 from sebody.runs.user_faults import functions
 
 MULTIPLE = 1e-6     # of a step: by which a period may miss a multiple of it
-AXES = {"position": "q", "velocity": "v", "acceleration": "a"}
 
 
 class Sampling:
@@ -40,7 +43,9 @@ class Sampling:
                          for k, sensor in enumerate(numbering.memory.sensors)
                          if kinds[k] == OUTSIDE]
         self.unsampled: tuple[NDArray, NDArray] | None = None   # by `begin`
-        self._readers: dict[str, Callable[[], float | NDArray]] = {}
+        self._read: dict[str, Callable[[], float | NDArray]] = {}
+        self._measure: dict[tuple[str, str], Callable[[], float | NDArray]] = {}
+        self._start = state.now.copy()
         # users' functions may change or jump, and short pulses be missed: for each piece to see
         self.needs_looks = any(True for _ in functions(model)) or any(
             len(one.times) > 1 or one.waves for one in numbering.time_functions)
@@ -62,9 +67,8 @@ class Sampling:
         """Read what the loop waits for."""
         memory = self.state.memory
         if memory[WAITS] == 1.0 and memory[HAS] == 0.0:
-            row = self._row()
             for place, sensor in self._outside:
-                memory[place] = _measured(row, sensor)[0]
+                memory[place] = self._measured(sensor)
             memory[HAS] = 1.0
 
     def check(self, h: float, fixed: bool) -> None:
@@ -91,14 +95,21 @@ class Sampling:
                                  f"not divide: give a step that does, such as {near:.6g}, or "
                                  "variable steps, tolerance=Tolerance(...)")
 
+    def _measured(self, sensor: Sensor) -> float | NDArray:
+        """What a sensor measures in the state reached."""
+        key = sensor.quantity, sensor.axes
+        if key not in self._measure:
+            self._measure[key] = self._reader(*key)
+        return sensor.gain * self._measure[key]()
+
     def _check_number(self, sensor: Sensor) -> None:
         name, quantity = sensor.name, sensor.quantity
         try:
-            value = _measured(self._row(), sensor)
+            value = np.asarray(self._measured(sensor))
         except InputError as error:
             raise InputError(f"sensor {name!r}: {error}") from error
-        if value.ndim > 1:
-            parts = "xyz"[:value.shape[1]] if value.ndim == 2 and value.shape[1] < 4 else "012"
+        if value.ndim > 0:
+            parts = "xyz"[:len(value)] if value.ndim == 1 and len(value) < 4 else "012"
             given = ", ".join(f"{quantity}.{part}" for part in parts[:3])
             raise InputError(f"sensor {name!r} measures {quantity!r}, which is several numbers: "
                              f"give one of them, such as {given}")
@@ -147,51 +158,50 @@ class Sampling:
         InputError
             A name that nothing has.
         """
-        reader = self._readers.get(name)
+        reader = self._read.get(name)
         if reader is None:
-            reader = self._readers.setdefault(inputs.name(name, "name of a quantity"),
-                                              self._reader(name))
+            reader = self._read.setdefault(inputs.name(name, "name of a quantity"),
+                                           self._last(name) or self._reader(name))
         return reader()
 
-    def _reader(self, name: str) -> Callable[[], float | NDArray]:
-        now, frames, values = self.state.now, self.state.frames, self.numbering.memory.values
-        if name in values:
-            place = values[name]
-            return lambda: float(frames[place])
-        owner, _, quantity = name.rpartition(".")
-        node = self.model.nodes.get(owner)
-        if quantity in AXES and node is not None and node.position is not None:
-            part = self.state.recorded_parts[AXES[quantity]]
-            first = part.start + self.numbering.dof_blocks[node.position]
-            last = first + self.model.dimension
-            return lambda: now[first:last].copy()
-        made = channel(self.model, self.numbering, name)
-        (kind, one), numbers = made.places[:2], made.numbers
-        if kind == DOT and np.count_nonzero(numbers) == np.count_nonzero(numbers[1:4]) == 1:
-            k = int(np.flatnonzero(numbers)[0])
-            factor, place = float(numbers[k]), int(one + k - 1)
-            return lambda: factor * float(now[place])
-        self._check_known(name)
-        return lambda: look_up(self._row(), name)[0]
+    def _last(self, name: str) -> Callable[[], float] | None:
+        """What reads the value that a sensor, a controller or Python gave last."""
+        frames, place = self.state.frames, self.numbering.memory.values.get(name)
+        return None if place is None else lambda: float(frames[place])
 
-    def _check_known(self, name: str) -> None:
-        look_up(self._row(), name)
+    def _reader(self, name: str, axes: str = "") -> Callable[[], float | NDArray]:
+        """What reads a quantity, of a vector perhaps a component in axes of a node."""
+        now = self.state.now
+        states = States(self.model, self.numbering, self.system, self.state, self._start)
+        try:
+            shape = states.put(name, axes)
+        except NoTape:
+            return lambda: self._looked_up(name, axes)
+        if (places := states.places()) is None:
+            return partial(self._evaluated, states.reading(), shape)
+        if shape:
+            return lambda: now[places].reshape(shape)
+        place = int(places[0])
+        return lambda: float(now[place])
+
+    def _looked_up(self, name: str, axes: str) -> float | NDArray:
+        """A quantity without a tape, perhaps in axes of a node."""
+        row = self._row()
+        if not axes:
+            return look_up(row, name)[0]
+        vector, _, label = name.rpartition(".")
+        of = histories(row)
+        R = of.whole(of.rotation(self.model.nodes[axes].rotation))[0]
+        return float(R[:, "xyz".index(label)] @ look_up(row, vector)[0])
+
+    def _evaluated(self, reading: Reading, shape: tuple[int, ...]) -> float | NDArray:
+        """A quantity whose tape is evaluated in the state reached."""
+        reading.numbers[1:] = 0.0       # angles begin within half a turn
+        if evaluate(self.system, self.state, reading):
+            raise InputError(f"the state at t = {self.state.clock.time:.6g} cannot be evaluated")
+        return reading.values.reshape(shape).copy() if shape else float(reading.values[0])
 
     def _row(self) -> Recording:
         """The state reached, as a result reads it."""
         return Recording(self.model, self.numbering, self.system, self.state,
                          self.state.now[None].copy(), 0.0)
-
-
-def _measured(row: Recording, sensor: Sensor) -> NDArray:
-    """What a sensor measures in the states of a recording, perhaps in axes of a node, (n, ...)."""
-    if not sensor.axes:
-        return sensor.gain * look_up(row, sensor.quantity)
-    vector, _, label = sensor.quantity.rpartition(".")
-    values, R = look_up(row, vector), look_up(row, f"{sensor.axes}.rotation")
-    if row.model.planar:
-        c, s = np.cos(R), np.sin(R)
-        R = np.stack([c, -s, s, c], axis=1).reshape(-1, 2, 2)
-    if values.shape[1:] != R.shape[2:]:
-        raise InputError(f"{vector!r} is no vector, which axes turn: leave out axes=")
-    return sensor.gain * np.einsum("nji,nj->ni", R, values)[:, "xyz".index(label)]
