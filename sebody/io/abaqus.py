@@ -49,10 +49,10 @@ def read_substructure(path: Path) -> Reading:
              for name, kind in _KINDS.items() if name != "damping" or kind in matrices}
     deck = _deck(path)
     points = {label: np.array(point) for label, point in deck.nodes.items()}
-    parts, names = reduced_parts(found, rows, points, str(path))
+    parts, names, left = reduced_parts(found, rows, points, str(path))
     structural = [_STRUCTURAL] if any(matrices.get(_STRUCTURAL, (0, []))[1]) else []
     parts, notes = with_damping(parts, f"*MATRIX, TYPE={_KINDS['damping']}", structural)
-    return Reading(parts, names, source=f"Abaqus substructure {path.name}", notes=notes)
+    return Reading(parts, names, source=f"Abaqus substructure {path.name}", notes={**left, **notes})
 
 
 def _square(path: Path, kind: str, matrices: dict, size: int) -> NDArray:

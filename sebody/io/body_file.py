@@ -28,9 +28,11 @@ from sebody.fem.materials import doubts
 from sebody.fem.stress import SolidStress, StressModes
 from sebody.io.body_table import body_table
 from sebody.reduction.body import ReducedBody
+from sebody.reduction.checks import check_layout, check_stiffness, coordinate_names
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.missing import lacks, sentences
 from sebody.reduction.recovery import Recovery
+from sebody.reduction.rigid_motions import rigid_motions
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
@@ -88,12 +90,26 @@ class BodyFile:
         InputError
             See `ReducedBody`, or members that are not those that were written.
         """
+        self._check_stiffness()
         reduced = ReducedBody(**self.parts, units=self.units)
         if self.changed:
             raise InputError(f"{', '.join(self.changed)} changed since the file was written; "
                              "import the body again, or write what was changed with "
                              "sebody.io.save_body")
         return reduced
+
+    def _check_stiffness(self) -> None:
+        """Refuse a stiffness that resists rigid motion by the names of nodes, where all fits."""
+        K, points = (np.asarray(self.parts[name], dtype=float) for name in
+                     ("stiffness", "coordinates"))
+        keeps = tuple(self.parts["keeps"])
+        check_layout(points, keeps)
+        called = [name + (f" ({told})" if (told := self.provenance.get(f"interface {name}", "")
+                                           ).startswith("node ") else "") for name in self.names]
+        names = coordinate_names(keeps, points.shape[1], self.parts.get("modes", 0), called)
+        if K.shape == (len(names),) * 2 and np.isfinite(K).all():
+            check_stiffness((K + K.T) / 2, rigid_motions(points, keeps, len(K), points.mean(axis=0)
+                                                         ), names)
 
 
 def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None = None, *,

@@ -136,8 +136,8 @@ def _check_directions(dofs: list[tuple[int, int]], deck: Deck, path: Path) -> No
     counts = Counter((label, direction // 3) for label, direction in dofs)
     for (label, turns), count in counts.items():
         if count < 3:
-            cards = [f"*{keyword} (line {deck.places[keyword].number})"
-                     for keyword in ("EQUATION", "MPC") if keyword in deck.places]
+            cards = [deck.card(keyword) for keyword in ("EQUATION", "MPC")
+                     if keyword in deck.places]
             raise InputError(
                 f"{path.with_suffix('.dof')} has {count} of 3 "
                 f"{'rotations' if turns else 'translations'} of node {label}: take "

@@ -22,6 +22,7 @@ from sebody.io.registry import naming, read_source
 from sebody.io.rigid import rigid_residual
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
+from sebody.reduction.free import Resisted
 from sebody.reduction.methods import reduce
 from sebody.reduction.watch import SILENT, Watch, watching
 
@@ -120,6 +121,8 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
         body = reduce(model, boundary.items, wanted.modes, method, judged=True, progress=watch)
+    except Resisted as error:
+        raise InputError(f"{path}: {error}{reading.cards(error.nodes, error.turns)}") from error
     except InputError as error:
         by_area = any(one.tie == "rbe3" for one in interfaces) and "weights='equal'" in str(error)
         raise InputError(f"{path}: {error}" + by_area * ", rbe3-equal:SET") from error
@@ -155,7 +158,9 @@ def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     if modes:
         raise InputError(f"modes is {inputs.shown(modes)}, but the files hold matrices that are "
                          "reduced already: leave modes out")
-    provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes}
+    provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes,
+                  **{f"interface {one.name}": f"node {one.nodes[0]}" for one in interfaces
+                     if one.nodes and str(one.nodes[0]) != one.name}}
     modal = isinstance(reading.model, ModalBody)
     for one in interfaces:
         if len(one.nodes) != 1 or (one.keeps and not modal):

@@ -20,6 +20,8 @@ from sebody.io.damping import with_damping
 from sebody.io.reading import Reading
 from sebody.io.reduced import reduced_parts
 from sebody.io.text import read_text
+from sebody.reduction.checks import RIGID_LIMIT, coordinate_names, rigid_residual
+from sebody.reduction.rigid_motions import rigid_motions
 
 _REMEDY = "write it with EXTSEOUT(STIFFNESS, MASS, ASMBULK, DMIGOP4) or DMIGPCH"
 _CARDS = (".asm", ".pch", ".bdf", ".dat")       # that may hold GRID cards, in this order
@@ -48,7 +50,8 @@ def read_op4(path: Path) -> Reading:
     if told != len(stiffness):
         raise InputError(f"{path} has {len(stiffness)} rows and {cards} lists {told}: give "
                          "files of one run")
-    return _reading(found, list(table.index), table, path)
+    # nodes may keep some of their DOFs, but places and axes need all six
+    return _reading(found, list(table.index), _grids(cards), path)
 
 
 def read_dmig(path: Path) -> Reading:
@@ -134,9 +137,27 @@ def _reading(found: Found, index: list, table: Any, path: Path) -> Reading:
             if None not in rows_of_node:
                 turn[np.ix_(rows_of_node, rows_of_node)] = axes       # output from basic components
     turned = {name: turn.T @ matrix @ turn for name, matrix in found.matrices.items()}
-    parts, names = reduced_parts(turned, rows, points, str(path))
+    parts, names, left = reduced_parts(turned, rows, points, str(path))
+    _check_systems(parts, reduced_parts(found.matrices, rows, points, str(path))[0],
+                   [node for node, axes in turns.items() if not np.allclose(axes, np.eye(3))], path)
     parts, notes = with_damping(parts, found.damping, found.structural)
-    return Reading(parts, names, source=f"Nastran {path.name}", notes=notes)
+    return Reading(parts, names, source=f"Nastran {path.name}", notes={**left, **notes})
+
+
+def _check_systems(parts: dict, basic: dict, nodes: list[int], path: Path) -> None:
+    """Refuse output systems that contradict the matrices, which fit basic axes without them."""
+    if nodes and not _is_free(parts) and _is_free(basic):
+        raise InputError(f"{path}: the matrices are along basic axes, but the cards give node"
+                         f"{'s' * (len(nodes) > 1)} {', '.join(map(str, nodes[:6]))} output "
+                         "systems (CD): take CD, or GRDSET, off the cards")
+
+
+def _is_free(parts: dict) -> bool:
+    """Whether a reduced stiffness resists no rigid motion."""
+    points, K = parts["coordinates"], parts["stiffness"]
+    rigid = rigid_motions(points, parts["keeps"], len(K), points.mean(axis=0))
+    names = coordinate_names(parts["keeps"], 3, parts["modes"])
+    return rigid_residual(K, rigid, names)[0] <= RIGID_LIMIT
 
 
 def _nodes(table: Any, path: Path) -> tuple[dict[int, NDArray], dict[int, NDArray]]:
@@ -161,8 +182,25 @@ def _uset(cards: Path) -> Any:
 
 
 def _grids(cards: Path) -> Any:
-    """All nodes of GRID cards."""
-    return _called(lambda: _nastran().bulk2uset(str(cards)), cards)[0]
+    """All nodes of GRID cards, with the systems of GRDSET where theirs are blank."""
+    nastran = _nastran()
+
+    def read(name: str) -> list:
+        return _called(lambda: nastran.rdcards(str(cards), name=name, return_var="list", blank="",
+                                               no_data_return=[]), cards)
+    defaults = read("grdset")
+    if not defaults:
+        return _called(lambda: nastran.bulk2uset(str(cards)), cards)[0]
+    # fields behind the name: label, CP, place, CD
+    of_place, of_motion = ([*defaults[0], *[""] * 6][k] or 0 for k in (1, 5))
+    rows = [[*grid, *[""] * 6][:6] for grid in read("grid")]
+    rows.sort(key=lambda row: row[0])
+    labels, places = [row[0] for row in rows], [[x or 0.0 for x in row[2:5]] for row in rows]
+    systems, outputs = ([default if row[k] == "" else row[k] for row in rows]
+                        for k, default in ((1, of_place), (5, of_motion)))
+    return _called(lambda: nastran.addgrid(
+        None, np.array(labels, dtype=np.int64), "b", np.array(systems), np.array(places, float),
+        np.array(outputs), nastran.rdcord2cards(str(cards))), cards)
 
 
 def _nastran() -> ModuleType:

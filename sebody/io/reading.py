@@ -24,6 +24,10 @@ class Reading(NamedTuple):
         Where a reduced body comes from; an FE model has its own `source`.
     notes : dict of str
         For the provenance, such as why there is no geometric stiffness.
+    holding : dict of str by label
+        Cards of the deck that may hold a node to the ground.
+    loading : tuple of str
+        Cards of the deck that may prestress the body, or turn rows.
     """
 
     model: FEModel | dict | ModalBody
@@ -31,3 +35,20 @@ class Reading(NamedTuple):
     rotation_nodes: Mapping[int, int] = MappingProxyType({})
     source: str = ""
     notes: Mapping[str, str] = MappingProxyType({})
+    holding: Mapping[int, str] = MappingProxyType({})
+    loading: tuple[str, ...] = ()
+
+    def cards(self, nodes: list[int], turns: bool) -> str:
+        """Cards that may be why a stiffness resists rigid motions, in words; empty if none are.
+
+        Parameters
+        ----------
+        nodes : list of int
+            With the largest forces.
+        turns : bool
+            Whether rotations alone are resisted.
+        """
+        labels = nodes if self.model.labels is None else self.model.labels[nodes].tolist()
+        found = [self.holding[label] for label in labels if label in self.holding]
+        found = list(dict.fromkeys(found)) or (list(self.loading) if turns else [])
+        return f"; the deck has {' and '.join(found)}" if found else ""

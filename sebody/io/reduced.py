@@ -7,13 +7,19 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.io.body_file import BodyFile
+from sebody.reduction.checks import dead_rows
 
+_SHOWN = 6      # nodes that a note names
 NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
 def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int] | None],
-                  points: Mapping[int, NDArray], source: str) -> tuple[dict, tuple[str, ...]]:
-    """Arguments of a `ReducedBody`, and its nodes' labels as names.
+                  points: Mapping[int, NDArray], source: str
+                  ) -> tuple[dict, tuple[str, ...], dict[str, str]]:
+    """Arguments of a `ReducedBody`, its nodes' labels as names, and a note of what is left out.
+
+    Triplets of rows that are zero in stiffness and mass are left out: programs write the rotations
+    of nodes of solids so.
 
     Parameters
     ----------
@@ -33,6 +39,7 @@ def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int
     """
     labels = list(dict.fromkeys(row[0] for row in rows if row is not None))
     place = {(label, k): i for i, row in enumerate(rows) if row is not None for label, k in [row]}
+    left = _left_out(matrices, place)
     keeps, order = [], []
     for label in labels:
         if label not in points:
@@ -47,16 +54,49 @@ def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int
     chosen = np.ix_(order, order)
     return {**{name: matrix[chosen] for name, matrix in matrices.items()},
             "coordinates": np.array([points[label] for label in labels], dtype=float),
-            "keeps": tuple(keeps), "modes": len(modes)}, tuple(map(str, labels))
+            "keeps": tuple(keeps), "modes": len(modes)}, tuple(map(str, labels)), _note(left)
+
+
+def _left_out(matrices: Mapping[str, NDArray], place: dict[tuple[int, int], int]
+              ) -> list[tuple[int, int]]:
+    """Triplets with neither stiffness nor mass, by label and first direction; they leave `place`.
+    """
+    names = [""] * len(matrices["stiffness"])
+    for (_, k), row in place.items():
+        names[row] = "position" if k < 3 else "rotation"
+    dead = dead_rows([matrices["stiffness"], matrices["mass"]],
+                     [name or f"mode {row}" for row, name in enumerate(names)])
+    left = []
+    for label, first in dict.fromkeys((label, 3 * (k // 3)) for label, k in place):
+        own = [(label, first + k) for k in range(3) if (label, first + k) in place]
+        other = any((label, k) in place for k in range(3 - first, 6 - first))
+        if other and all(dead[place[one]] for one in own):
+            left.append((label, first))
+            for one in own:
+                del place[one]
+    return left
+
+
+def _note(left: Sequence[tuple[int, int]]) -> dict[str, str]:
+    """What was left out, in words."""
+    if not left:
+        return {}
+    shown = [f"{'rotations' if first else 'translations'} of node {label}" for label, first in left]
+    more = ", ..." * (len(shown) > _SHOWN)
+    return {"rows left out": f"{', '.join(shown[:_SHOWN])}{more}: neither stiffness nor mass"}
 
 
 def _keep(label: int, directions: list[int], source: str) -> str:
     keeps = {(0, 1, 2): "translation", (3, 4, 5): "rotation", (0, 1, 2, 3, 4, 5): "full"}.get(
         tuple(directions))
     if keeps is None:
-        have = ", ".join(NAMES[k] for k in directions)
+        have = ", ".join(NAMES[k] for k in directions) or "nothing that has stiffness or mass"
+        lacking = ", ".join(NAMES[k] for first in (0, 3) for k in range(first, first + 3)
+                            if k not in directions and any(first <= j < first + 3
+                                                           for j in directions))
         raise InputError(f"{source} keeps {have} of node {label}: retain all three translations, "
-                         "all three rotations, or both, when reducing")
+                         "all three rotations, or both, when reducing"
+                         + f" (also {lacking})" * bool(lacking))
     return keeps
 
 

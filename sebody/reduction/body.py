@@ -121,6 +121,9 @@ class ReducedBody:
             if (matrix := getattr(self, name)) is not None or name != "damping":
                 self._store(name, checks.symmetric_matrix(matrix, name, names, coordinates))
         rigid = self.rigid_modes_about(coordinates.mean(axis=0))
+        # a point without rotary inertia is a body: what moves it as a whole may be left out
+        checks.check_live(self.stiffness, self.mass, names,
+                          strainless_coordinates(keeps, coordinates.shape[1]))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
         if self.damping is not None:

@@ -19,6 +19,7 @@ ROUNDING = 1e-14        # of the sums a reduced matrix is made of, relative to t
 NEGATIVE_MASS_LIMIT = 1e-8
 NEGATIVE_STIFFNESS_LIMIT = 1e-6
 RIGID_LIMIT = 1e-6
+_DIGITS = 1e-4      # residual of rigid motion that few printed digits may leave
 
 
 def check_layout(coordinates: NDArray, keeps: tuple[str, ...]) -> None:
@@ -124,8 +125,7 @@ def check_stiffness(stiffness: NDArray, rigid: NDArray, names: list[str]) -> Non
     if residual > RIGID_LIMIT:
         raise InputError(
             f"stiffness resists rigid motion: |K R| is {residual:.2e} of |K| |R| (limit "
-            f"{RIGID_LIMIT:.0e}), worst in row {row} ({names[row]}); export the matrices with 14 "
-            "digits or more before reducing, and check coordinates, axes and coordinate order"
+            f"{RIGID_LIMIT:.0e}), worst in row {row} ({names[row]}); {why_resisted(residual)}"
         )
     value, row = _lowest(stiffness, names)
     if value < -NEGATIVE_STIFFNESS_LIMIT:
@@ -133,6 +133,51 @@ def check_stiffness(stiffness: NDArray, rigid: NDArray, names: list[str]) -> Non
             f"stiffness has a negative eigenvalue, {value:.2e} of the largest, mostly in row {row} "
             f"({names[row]}); check its sign and the digits it was exported with"
         )
+
+
+def why_resisted(residual: float, turns: bool = False, local: bool = False) -> str:
+    """What may make a stiffness resist rigid motion by this part of its entries, and the remedy.
+
+    Parameters
+    ----------
+    residual : float
+    turns : bool
+        Whether it resists rotations alone.
+    local : bool
+        Whether the forces are at few nodes.
+    """
+    axes = ("places of nodes, axes (systems of nodes, CD, *TRANSFORM) or the order of rows that "
+            "are not those of the matrix")
+    if turns:
+        return ("translations are free, rotations are not, as of matrices of a prestressed state, "
+                f"or of {axes}; export the matrices of the unloaded body, and check these")
+    if residual < _DIGITS and not local:
+        return ("as of matrices that are printed with few digits; export them with 14 digits or "
+                "more before reducing, and check for soft springs to the ground")
+    return (f"as of supports, springs to the ground or equations with it, or of {axes}; the body "
+            "must be free, so remove them and hold it in the model")
+
+
+def check_live(stiffness: NDArray, mass: NDArray, names: list[str], beside: NDArray) -> None:
+    """Raise InputError where a boundary coordinate has neither stiffness nor mass.
+
+    The coordinates `beside` (k,) may be so.
+    """
+    still = dead_rows((stiffness, mass), names)
+    still[beside] = False
+    dead = [name for name, one in zip(names, still, strict=True)
+            if one and not name.startswith("mode")]
+    if dead:
+        shown = ", ".join(dead[:6]) + ", ..." * (len(dead) > 6)
+        raise InputError(f"{shown} {'has' if len(dead) == 1 else 'have'} neither stiffness nor "
+                         "mass, as rotations of nodes of solids: nothing determines how they move; "
+                         "leave these rows out and keep 'translation' there")
+
+
+def dead_rows(matrices: Sequence[NDArray], names: list[str]) -> NDArray:
+    """Which rows are zero in all matrices, relative to the largest of their kind, (n,) of bool."""
+    return np.all([np.abs(matrix / np.outer(scale, scale)).max(axis=1, initial=0.0) <= ROUNDING
+                   for matrix in matrices for scale in [unit_scale(matrix, names)]], axis=0)
 
 
 def check_mass(mass: NDArray, rigid: NDArray, names: list[str]) -> None:

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from sebody.basics.errors import InputError
 
 _SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
-_STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
+STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
 _STILL = 1e-8  # motion of held rows that is rounding, relative to the extent of the body
 _SUSPECT = 1e-11  # lowest eigenvalue above which no pivot is looked at
 _SMALL = 5000  # DOFs up to which pivots are looked at in any case
@@ -75,7 +75,7 @@ def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths:
 def is_strainless(stiffness: sparse.csc_array, motions: NDArray) -> bool:
     """Whether a stiffness resists motions (n, k) to rounding alone."""
     summands = (abs(stiffness) @ np.abs(motions)).max(axis=0, initial=0.0)
-    return bool(np.all(np.abs(stiffness @ motions).max(axis=0, initial=0.0) <= _STRAIN * summands))
+    return bool(np.all(np.abs(stiffness @ motions).max(axis=0, initial=0.0) <= STRAIN * summands))
 
 
 def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: str) -> SuperLU:

@@ -41,12 +41,14 @@ from sebody.reduction.clamped import ClampedInterior, canonical_turn
 from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import is_strainless
+from sebody.reduction.free import check_connected, check_free
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.missing import missing_of
 from sebody.reduction.rigid_motions import strainless_coordinates
 from sebody.reduction.watch import SILENT, Watch, watching
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
+_HELD = 1e-3        # part of a row's forces that rigid motion causes, beyond rounding of digits
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
 _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to the largest
 
@@ -105,7 +107,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     watch = watching(progress)
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
-    matrices, interior, static = clamped(fe_model, edge, watch)
+    matrices, interior, static = clamped(fe_model, edge, watch, method)
     notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
     free = None
     if method in ("craig-bampton", "guyan"):
@@ -146,12 +148,22 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     return body if recover is None else body.recovering(recover)
 
 
-def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT
+def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT,
+            method: str = "craig-bampton"
             ) -> tuple[tuple[sparse.csc_array, sparse.csc_array], ClampedInterior, ComponentModes]:
     """Stiffness and mass of independent DOFs, the interior, and the constraint modes of a boundary.
+
+    Raises
+    ------
+    InputError
+        Several parts, a stiffness that resists rigid motion, or a mechanism inside.
     """
     ties = edge.ties
     stiffness, mass = (ties.project(m) for m in (fe_model.stiffness, fe_model.mass))
+    check_connected(fe_model, ties, stiffness)
+    # where the boundary holds the body, few printed digits are judged by what they do to the body
+    held = edge.means.shape[0] == 0 and method in ("craig-bampton", "guyan")
+    check_free(fe_model, ties, stiffness, _HELD if held else 0.0)
     interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
                                ties.name, watch)
     static = static_modes(stiffness, interior, *edge.unit_motions())

@@ -78,6 +78,24 @@ class Ties:
         node, kind = np.argwhere(model.rows == np.flatnonzero(self.independent == row)[0])[0]
         return f"{model.node_dofs[kind]} of {model.node_name(int(node))}"
 
+    def owners(self) -> NDArray:
+        """FE node of each independent DOF, the number of nodes and more for faces, (size,)."""
+        model = self._model
+        result = np.empty(self.size, dtype=int)
+        there = (model.rows >= 0) & (self.independent[model.rows] >= 0)
+        result[self.independent[model.rows[there]]] = np.nonzero(there)[0]
+        own = self._dimension + self._angles
+        result[self._loose:] = len(model.rows) + np.arange(self.size - self._loose) // own
+        return result
+
+    def owner_name(self, owner: int) -> str:
+        """A node or a face of `owners` as messages name it."""
+        face = owner - len(self._model.rows)
+        if face < 0:
+            return self._model.node_name(owner)
+        own = self._faces[face]
+        return own.called if own.name else f"rigid face {face}"
+
     def second_order(self, forces: NDArray, basis: NDArray) -> NDArray:
         """Second derivative of the work of forces (n_dofs,) on the turning of rigid faces.
 

@@ -13,7 +13,8 @@ from scipy.linalg import LinAlgError, null_space
 from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.basics.tabular import brief
+from sebody.basics.tabular import brief, counted
+from sebody.reduction.massless import condensed
 from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
@@ -99,13 +100,21 @@ class Vibrations(NamedTuple):
     omega: NDArray      # (m,) angular frequencies, ascending [1/time]
     shapes: NDArray     # (unknowns, m) mass-normalised, in the axes of the unknowns
     of_names: Shapes
+    following: int = 0  # motions without mass, which follow the others statically
 
     def __repr__(self) -> str:
-        return mode_tables.text(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+        return mode_tables.text(self._title, 1j * self.omega)
 
     def _repr_html_(self) -> str:
         """What notebooks show."""
-        return mode_tables.html(f"{len(self.omega)} undamped vibrations", 1j * self.omega)
+        return mode_tables.html(self._title, 1j * self.omega)
+
+    @property
+    def _title(self) -> str:
+        title = f"{len(self.omega)} undamped vibrations"
+        if not self.following:
+            return title
+        return f"{title}; {counted(self.following, 'motion')} without mass follow statically"
 
     @property
     def frequency(self) -> NDArray:
@@ -144,11 +153,17 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
         raise InputError(f"controllers {', '.join(laws)} are continuous, and a closed loop has no "
                          "undamped vibrations: use modes()")
     M, _, K, free = linearize(run)[:4]
+    following = 0
     try:
-        squares, shapes = undamped(M, K)
-    except LinAlgError as error:
-        raise InputError("the model has motions without mass, which have no frequency: give every "
-                         "rotation inertia, or use modes") from error
+        try:
+            squares, shapes = undamped(M, K)
+        except LinAlgError:
+            own = condensed(M, K)
+            squares, shapes = undamped(own.mass, own.stiffness)
+            shapes, following = own.motions @ shapes, own.following
+            if own.bare:
+                raise InputError(f"the model has {counted(own.bare, 'motion')} with neither mass "
+                                 "nor stiffness: hold what moves so, or give it inertia") from None
     except ArithmeticError as error:
         raise InputError("the state is not stable: loads that turn with the model make it flutter; "
                          "modes() has the growth of its motions") from error
@@ -157,7 +172,7 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
                          f"{squares[0]:.4g}; modes() has the shape and the growth of this motion. "
                          "Start from an equilibrium to which it leads, or hold it")
     return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
-                      Shapes(run))
+                      Shapes(run), following)
 
 
 class Modes(NamedTuple):

@@ -8,7 +8,8 @@ from malformed import fe_files
 from scipy.linalg import eigh
 
 from sebody import InputError
-from sebody.io import import_body
+from sebody.explore.inspection import inspect
+from sebody.io import import_body, read_body_file
 
 with np.printoptions():         # which pyyeti changes
     pyyeti = pytest.importorskip("pyyeti", reason="reads OP4 and DMIG")
@@ -102,11 +103,14 @@ def test_the_format_of_another_file(tmp_path, name, kind, said):
         import_body(tmp_path / name, kind=kind)
 
 
-def dmig(path, **matrices):
+GRIDS = ("GRID           4              0.      0.      0.",
+         "GRID           7              1.      0.      0.")
+
+
+def dmig(path, grids=GRIDS, **matrices):
     """DMIG cards of the unit beam between nodes 4 and 7, without entries that are zero."""
     pairs = [(node, k) for node in (4, 7) for k in range(1, 7)]
-    lines = ["GRID           4              0.      0.      0.",
-             "GRID           7              1.      0.      0."]
+    lines = list(grids)
     for name, matrix in matrices.items():
         lines.append(f"DMIG    {name:8}{0:8d}{6:8d}{2:8d}{0:8d}{'':24}{12:8d}")
         for j, (node, k) in enumerate(pairs):
@@ -157,4 +161,86 @@ def test_entries_that_come_twice(tmp_path):
     path.write_text("\n".join(lines) + "\n")
     with pytest.raises(InputError, match="DMIG KAAX has the entry of DOF 1 of node 4 and DOF 1 of "
                                          "node 7 twice, once on either side"):
+        import_body(path)
+
+
+def turned(matrix, axes):
+    """A matrix of nodes 4 and 7 with node 7 along axes (rows)."""
+    whole = np.eye(12)
+    whole[6:9, 6:9] = whole[9:, 9:] = axes
+    return whole @ matrix @ whole.T
+
+
+SYSTEM = ("CORD2R         5       0      0.      0.      0.      0.      1.      0.+C1",
+          "+C1           0.      0.      1.")
+AXES = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])     # x, y, z of system 5
+
+
+def test_defaults_of_grid_cards(tmp_path):
+    """GRDSET holds where a field is blank, not where it is zero; contradictions are named."""
+    K, M = fe_files.two_nodes()
+    path = tmp_path / "se.pch"
+    plain = import_body(dmig(path, KAAX=K, MAAX=M))
+    default = "GRDSET" + " " * 42 + f"{5:8d}"
+    grids = [default, *SYSTEM, GRIDS[0] + f"{0:8d}", GRIDS[1]]
+    body = import_body(dmig(path, grids, KAAX=turned(K, AXES), MAAX=turned(M, AXES)))
+    np.testing.assert_allclose(body.stiffness, plain.stiffness, atol=1e-12)
+    np.testing.assert_allclose(body.mass, plain.mass, atol=1e-12)
+    with pytest.raises(InputError, match="matrices are along basic axes, but the cards give node 7 "
+                                         "output systems .CD.: take CD, or GRDSET, off the cards"):
+        import_body(dmig(path, grids, KAAX=K, MAAX=M))
+
+
+def test_places_that_are_not_those_of_the_matrix(tmp_path):
+    """Labels and interfaces are named; digits are only blamed for what they may do."""
+    K, M = fe_files.two_nodes()
+    grids = [GRIDS[0], GRIDS[1].replace("1.", "3.")]
+    path = dmig(tmp_path / "se.pch", grids, KAAX=K, MAAX=M)
+    with pytest.raises(InputError, match=r"resists rigid motion: .* \((position|rotation) . "
+                       r"of (tip \(node 7\)|root \(node 4\))\); as of supports,") as told:
+        import_body(path, {"tip": 7, "root": 4})
+    assert "digits" not in str(told.value)
+    noise = 1e-5 * np.sin(np.add.outer(np.arange(12), np.arange(12)))
+    rounded = np.round(K * (1 + noise), 6)
+    with pytest.raises(InputError, match="few digits; export them with 14 digits"):
+        import_body(dmig(path, KAAX=rounded, MAAX=M))
+
+
+def test_rotations_with_neither_stiffness_nor_mass_are_left_out(tmp_path):
+    """MSC writes 123456 of nodes of solids: the node keeps its translation, with a note."""
+    K, M = fe_files.two_nodes()
+    bar = np.zeros((12, 12))        # held at node 4 by its rotations: node 7 has none
+    T = np.zeros((9, 12))
+    T[:, :9] = np.eye(9)
+    static = -np.linalg.solve(K[9:, 9:], K[9:, :9])
+    bar[:9, :9] = K[:9, :9] + K[:9, 9:] @ static
+    mass = M.copy()
+    mass[9:, 9:] = 0.0
+    output = tmp_path / "body.npz"
+    path = tmp_path / "se.op4"
+    op4.write(str(path), {"kaax": bar, "maax": mass})
+    path.with_suffix(".bdf").write_text("\n".join(GRIDS) + "\n")
+    body = import_body(path, output=output)
+    assert body.keeps == ("full", "translation")
+    assert read_body_file(output).provenance["rows left out"] == (
+        "rotations of node 7: neither stiffness nor mass")
+    assert inspect(read_body_file(output)).usable
+
+
+def test_a_node_of_op4_that_keeps_some_directions(tmp_path):
+    """Translations alone are read, one of them is refused by name, with what to retain."""
+    K, M = fe_files.two_nodes()
+    path = tmp_path / "se.op4"
+    static = -np.linalg.solve(K[9:, 9:], K[9:, :9])
+    op4.write(str(path), {"kaax": K[:9, :9] + K[:9, 9:] @ static, "maax": M[:9, :9]})
+    lines = ["SECONCT       75       0", "               1       1       2       2", *GRIDS]
+    text = "\n".join(lines).replace("       4  ", "       1  ").replace("       7  ", "       2  ")
+    path.with_suffix(".asm").write_text(text + "\n")
+    extern = "EXTRN          1  123456       2     {}\n"
+    path.with_suffix(".pch").write_text(extern.format("123"))
+    assert import_body(path).keeps == ("full", "translation")
+    op4.write(str(path), {"kaax": K[:7, :7], "maax": M[:7, :7]})
+    path.with_suffix(".pch").write_text(extern.format("  2"))
+    with pytest.raises(InputError, match="keeps y of node 2: retain all three translations, .* "
+                                         r"reducing \(also x, z\)"):
         import_body(path)

@@ -198,7 +198,7 @@ CALCULIX = {
     "Guyan with modes": Case("method 'guyan' has none", options={"method": "guyan", "modes": 2}),
     "an unknown format": Case("format 'patran' is unknown: use 'calculix'", options={
         "kind": "patran"}),
-    "a loose part": Case("of node 170", again(model=in_two_parts())),
+    "a loose part": Case("one of 8 nodes (node 170", again(model=in_two_parts())),
     "no mass at all": Case("the body has no mass", again(model=model_of(mass=0 * BLOCK.mass)), {
         "modes": 0}),
     "negative mass": Case("mass is indefinite", again(model=model_of(mass=-BLOCK.mass)), {

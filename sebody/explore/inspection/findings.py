@@ -83,8 +83,11 @@ def _mass(numbers: dict) -> list[Finding]:
                               f"its largest eigenvalue, mostly in {lowest['worst']}",
                               "check the order of its rows and the digits of the file"))
     elif lowest["lowest"] < _MASSLESS:
+        following = numbers["frequencies"]["following"]
         listed.append(Finding("caution", "the mass matrix is singular, mostly in "
-                              f"{lowest['worst']}: some motion has no inertia",
+                              f"{lowest['worst']}: some motion has no inertia"
+                              + f"; in the frequencies {following} such motions follow the others "
+                              "statically" * bool(following),
                               "give it mass, or hold it by joints; damping by a ratio and SID need "
                               "inertia of every coordinate"))
     if numbers["mass_geometry_defect"] > _GEOMETRY:

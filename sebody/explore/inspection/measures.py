@@ -20,6 +20,7 @@ from sebody.reduction.checks import (
     rigid_residual,
     unit_scale,
 )
+from sebody.reduction.massless import condensed
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.runs.limits.thresholds import PERIOD
 
@@ -153,53 +154,46 @@ def definiteness(body: Matrices) -> dict:
 def frequencies(body: Matrices) -> dict:
     """Free vibrations: squares of all angular frequencies, and the first flexible ones in Hz.
 
-    The lowest ones are those of rigid motion, as many as there are rigid motions.
+    The lowest ones are those of rigid motion, as many as rigid motions that have inertia. Motions
+    without mass follow the others statically; their number is ``following``.
     """
-    size = np.sqrt(np.outer(*[unit_scale(body.mass, body.names)] * 2))
-    scaled = body.mass / size
-    stiffness = body.stiffness / size
     try:
-        if np.linalg.eigvalsh(scaled)[0] <= _MASSLESS * np.abs(scaled).max():
-            raise LinAlgError
-        squares = eigh(stiffness, scaled, eigvals_only=True)
-    except LinAlgError:     # coordinates without mass: the inverse problem knows no infinity
-        squares = _massless(stiffness, scaled)
-    rigid = body.rigid.shape[1]
+        squares, _, rigid, following = _vibrations(body)
+    except LinAlgError:
+        squares, rigid, following = np.zeros(0), 0, 0
     hertz = np.sqrt(np.abs(squares)) / (2 * np.pi)
     flexible = hertz[rigid:]
     last = flexible[-1] if len(flexible) else np.nan
     first = flexible[0] if len(flexible) else np.nan
     return {"rigid": hertz[:rigid], "flexible": flexible[:SHOWN], "count": len(flexible),
             "highest": float(last), "step_first": 1 / (PERIOD * first) if first > 0 else np.inf,
-            "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf}
+            "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf, "following": following}
 
 
 def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
     """Frequencies (k,) in Hz of the lowest free vibrations, and their motions (n, k)."""
-    size = np.sqrt(unit_scale(body.mass, body.names))
-    stiffness, mass = (matrix / np.outer(size, size) for matrix in (body.stiffness, body.mass))
-    rigid = body.rigid.shape[1]
-    shift = np.trace(np.abs(stiffness)) / max(np.trace(mass), 1e-300) * 1e-6
-    try:        # the inverse problem: coordinates may be massless
-        inverse, shapes = eigh(mass, stiffness + shift * mass)
-    except LinAlgError:
-        return np.zeros(0), np.zeros((len(size), 0))
-    inverse, shapes = inverse[::-1], shapes[:, ::-1]
-    there = inverse[rigid:] > 1e-14 * inverse[0]
-    squares = 1 / inverse[rigid:][there] - shift
-    modes = shapes[:, rigid:][:, there] / size[:, None]
-    return np.sqrt(np.maximum(squares, 0.0))[:most] / (2 * np.pi), modes[:, :most]
-
-
-def _massless(stiffness: NDArray, mass: NDArray) -> NDArray:
-    """Squares of the finite angular frequencies of a semidefinite mass."""
-    shift = np.trace(stiffness) / max(np.trace(mass), 1e-300) * 1e-6
     try:
-        inverse = eigh(mass, stiffness + shift * mass, eigvals_only=True)[::-1]
+        squares, shapes, rigid, _ = _vibrations(body)
     except LinAlgError:
-        return np.zeros(0)
-    inverse = inverse[inverse > 1e-14 * inverse[0]]
-    return 1 / inverse - shift
+        return np.zeros(0), np.zeros((len(body.mass), 0))
+    own = slice(rigid, rigid + most)
+    return np.sqrt(np.maximum(squares[own], 0.0)) / (2 * np.pi), shapes[:, own]
+
+
+def _vibrations(body: Matrices) -> tuple[NDArray, NDArray, int, int]:
+    """Squares of frequencies, shapes, number of rigid motions among them, motions without mass."""
+    size = np.sqrt(np.outer(*[unit_scale(body.mass, body.names)] * 2))
+    scaled = body.mass / size
+    if np.linalg.eigvalsh(scaled)[0] > _MASSLESS * np.abs(scaled).max():
+        squares, shapes = eigh(body.stiffness / size, scaled)
+        return squares, shapes / np.sqrt(np.diag(size))[:, None], body.rigid.shape[1], 0
+    own = condensed(body.mass, body.stiffness)
+    squares, shapes = eigh((own.stiffness + own.stiffness.T) / 2, own.mass)
+    inertia = body.rigid.T @ body.mass @ body.rigid
+    unit = np.sqrt(np.abs(np.diag(inertia)))
+    unit[unit == 0] = 1.0
+    rigid = int(np.linalg.matrix_rank(inertia / np.outer(unit, unit), tol=_MASSLESS))
+    return squares, own.motions @ shapes, rigid, own.following
 
 
 def frame(body: Matrices, centre: NDArray) -> dict:

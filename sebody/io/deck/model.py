@@ -14,6 +14,8 @@ from sebody.io.reading import Reading
 from sebody.io.tied import tied_mass_field
 
 _REMEDY = "correct the deck and import again"
+_GROUNDED = ("SPRING1", "DASHPOT1")     # springs and dampers of one node
+_LOADING = ("STATIC", "TRANSFORM")      # steps before, which prestress; systems of nodes
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -63,7 +65,16 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
         stress=deck_stress(solids, motion.points) if related else (), source=source,
         followers=followers, missing=missing,
         materials=_materials(deck))
-    return Reading(model, notes={"geometric stiffness": note} if geometric else {})
+    return Reading(model, notes={"geometric stiffness": note} if geometric else {},
+                   holding=_holding(deck), loading=tuple(
+                       deck.card(keyword) for keyword in _LOADING if keyword in deck.places))
+
+
+def _holding(deck: Deck) -> dict[int, str]:
+    """Cards by the nodes that they connect to the ground."""
+    return {label: f"*ELEMENT, TYPE={group.kind} (line {group.row.number})"
+            for group in deck.elements if group.kind in _GROUNDED
+            for nodes in group.nodes.values() for label in nodes}
 
 
 def _materials(deck: Deck) -> list[Material]:

@@ -83,6 +83,10 @@ class Deck:
         return {label: Solid(CELLS[group.kind], nodes) for group in self.elements
                 if group.kind in CELLS for label, nodes in group.nodes.items()}
 
+    def card(self, keyword: str) -> str:
+        """A keyword that occurs, with its line, for messages."""
+        return f"*{keyword} (line {self.places[keyword].number})"
+
     def surface_nodes(self, name: str) -> list[int]:
         """Labels of the nodes of a surface."""
         return surface_nodes(self.surfaces[name], self.node_sets, self.element_sets, self.solids)
