@@ -46,6 +46,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "'sebody inspect' can be used")
     parser.add_argument("--lean", action="store_true",
                         help="omit shapes and mesh of the FE model, which make up most of the file")
+    parser.add_argument("--compare-free", action="store_true",
+                        help="compare free frequencies with those of the FE model without rigid "
+                             "faces, which stiffen it; takes another factorization")
     parser.add_argument("--output", type=Path, required=True, metavar="BODY.npz",
                         help="body file to write")
     return parser
@@ -63,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 
     check_target(options.output, *TARGET)
     wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,
-                    _damping(options.damping))
+                    _damping(options.damping), options.compare_free)
     parsed_units(options.units, "--units")
     watch = Terminal()
     try:

@@ -18,6 +18,7 @@ from sebody.fem.faces import faces_within, normals
 from sebody.fem.model import FEModel
 
 ROUND = 2e-3        # of the radius, by which corners may be off a cylinder
+_OFF = 0.02         # the same of the size of a face, where a cylinder is typed
 _ARC = 0.05         # mean square of the normals' second direction, of an arc of some 45 degrees
 _RADIAL = 0.8       # least cosine between the normal of a facet and the arm of its middle
 _CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "line": 2, "line3": 2}
@@ -178,7 +179,8 @@ def _cylinder(points: NDArray, axis: NDArray) -> Cylinder:
 
 def _on(cylinder: Cylinder, facets: _Facets, length: float | None) -> NDArray:
     """Faces whose corners all lie on a cylinder."""
-    room = ROUND * cylinder.radius
+    # a point that is typed is off the axis by a little, beside the size of the faces
+    room = max(ROUND * cylinder.radius, _OFF * float(np.sqrt(np.median(facets.areas))))
     lies_on = np.array([np.abs(cylinder.off(corners)).max() <= room for corners in facets.places])
     if length is not None:
         half = inputs.number(length, "length of a cylinder", above=0) / 2 + room

@@ -298,8 +298,11 @@ def _check_entries(found: Entries) -> None:
     if not found.by_number:
         mechanical &= (places[:, 1::2] <= 6).all(axis=1)
     held = np.abs(rows[:, -1]) >= _HELD
+    internal = (places < 0).any(axis=1) & (not found.by_number)
     for wrong, what, remedy in (
             (~finite, "no row of node, DOF, node, DOF, value", _GENERATE),
+            (internal, "{} is a node that Abaqus has made within an element, as in B33",
+             "use B31 or B32, and no other elements with internal nodes"),
             (~mechanical, "{} is not a mechanical DOF",
              "leave out hybrid elements, Lagrange multipliers and temperatures"),
             (held, "{} is fixed", "remove *BOUNDARY: the body must be free")):

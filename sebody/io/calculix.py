@@ -71,6 +71,17 @@ def _check_free(deck: Deck) -> None:
             raise group.row.fault(
                 "CalculiX gives the incompatible modes of C3D8I rows and masses of their own, "
                 "which belong to no node of the deck", "use C3D20R, C3D20 or C3D10")
+    if "MPC" in deck.places:
+        raise deck.places["MPC"].fault(
+            "CalculiX takes DOFs of nodes that *MPC constrains out of the matrices, and writes "
+            "numbers that are none for some kinds", "take it out and run ccx again: tie faces "
+            "with *RIGID BODY, or at import by rbe2:SET or rbe3:SET")
+    for group in deck.elements:
+        if group.kind == "DCOUP3D":
+            raise group.row.fault(
+                "CalculiX puts the reference node of *DISTRIBUTING COUPLING (DCOUP3D) in the place "
+                "of a node of its face, whose rows are not in the matrices", "take the element and "
+                "the card out and run ccx again: name the face at import, rbe3:SET")
     if deck.supports:
         raise deck.supports[0].fault(
             "*BOUNDARY holds nodes, whose rows are not in the matrices", "take it out and run ccx "

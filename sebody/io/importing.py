@@ -6,10 +6,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target
+from sebody.basics.massless import condensed
 from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
@@ -23,7 +26,7 @@ from sebody.io.rigid import rigid_residual
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.free import Resisted
-from sebody.reduction.methods import reduce
+from sebody.reduction.methods import free_frequencies, reduce
 from sebody.reduction.watch import SILENT, Watch, watching
 
 
@@ -52,6 +55,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
                 modes: int | Accuracy = 0, method: str = "craig-bampton", *,
                 kind: str | None = None, units: str = "",
                 damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
+                compare_free: bool = False,
                 progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """A body of the files of an FE program, as ``sebody import`` makes it.
 
@@ -77,6 +81,9 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         up, the last number also of those beyond.
     output : str or Path, optional
         Body file to write.
+    compare_free : bool
+        Compare the first free frequencies of the body with those of the FE model without
+        interfaces: what its rigid faces stiffen. It takes another factorization.
     progress : function of a text, or True, optional
         Is told what takes long, what it will cost, and what costs less; True for lines on standard
         error.
@@ -91,7 +98,8 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     if output is not None:
         check_target(output, *TARGET)
     watch = watching(progress)
-    wanted = Wanted(parsed(interfaces), modes, method, units, damping)
+    wanted = Wanted(parsed(interfaces), modes, method, units, damping,
+                    inputs.flag(compare_free, "compare_free"))
     watch.stage(f"reading {path}")
     file = imported(read_source(path, kind), wanted, path, watch)
     with naming(path):
@@ -109,6 +117,7 @@ class Wanted(NamedTuple):
     method: str = "craig-bampton"
     units: str = ""
     damping: float | Sequence[float] = 0.0
+    compare_free: bool = False
 
 
 def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
@@ -134,8 +143,27 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     for note in body.notes:
         if note.startswith(_ACCURACY):
             provenance["accuracy"] = note.removeprefix(_ACCURACY)
+    if wanted.compare_free:
+        provenance["free part"] = _compared(body, free_frequencies(model, _COMPARED, watch))
     return _damped(BodyFile(body_parts(body), names, units or model.units, provenance),
                    wanted.damping)
+
+
+_COMPARED = 6       # free frequencies
+_STIFFENED = 0.02   # relative difference of frequencies from which rigid faces matter
+
+
+def _compared(body: ReducedBody, free: NDArray) -> str:
+    """Free frequencies of the FE model and how far those of the body are off, in words."""
+    own = condensed(body.mass, body.stiffness)
+    squares = eigh((own.stiffness + own.stiffness.T) / 2, own.mass, eigvals_only=True)
+    rigid = body.rigid_modes.shape[1]
+    hertz = np.sqrt(np.maximum(squares, 0.0))[rigid:rigid + len(free)] / (2 * np.pi)
+    off = hertz / free[:len(hertz)] - 1
+    text = ", ".join(f"{one:.5g} ({part:+.2%})" for one, part in zip(free, off, strict=False))
+    stiff = np.abs(off).max(initial=0.0) > _STIFFENED
+    return (f"its free frequencies, and how far those of the body are off: {text}"
+            + "; where that matters, tie faces by rbe3 or keep more modes" * bool(stiff))
 
 
 _ACCURACY = "accuracy: "        # beginning of a note of a reduction

@@ -50,7 +50,7 @@ class Interface(NamedTuple):
     node_set : str
         Name of the set.
     cylinder : Round, optional
-        Whose faces are tied.
+        Whose faces are tied, to its point.
     point : tuple of float
         Reference point of a set; the middle of its faces if empty.
     keeps : str
@@ -215,8 +215,7 @@ def _face(model: FEModel, one: Interface) -> tuple[BoundaryItem, str]:
                          f"interface then, such as {one.name}=900001/900002")
     middle = middle_of(model, nodes)
     if one.cylinder and middle is not None:     # of little of which the faces may be
-        given = one.cylinder.cylinder
-        middle = Middle(given.foot(middle.point), given)
+        middle = Middle(np.array(one.cylinder.point), one.cylinder.cylinder)
     point = np.array(one.point) if one.point else _middle(model, middle, nodes, one)
     keeps = one.keeps or "full"
     note = _described(model, one, nodes, left, middle)
@@ -256,7 +255,9 @@ def _described(model: FEModel, one: Interface, nodes: tuple[int, ...], left: lis
         text += ", about their mean: no faces lie within them"
     elif middle is not None and one.tie != "rbe3-equal":
         text += ", about the centroid of their faces"
-        if middle.cylinder is not None:
+        if one.cylinder:
+            text = text.replace("centroid of their faces", "point given")
+        elif middle.cylinder is not None:
             axis = ", ".join(f"{x:.6g}" for x in middle.cylinder.axis.round(9) + 0.0)
             text = text.replace("centroid of their faces", "middle of the cylinder of radius "
                                 f"{middle.cylinder.radius:.6g} along ({axis})")

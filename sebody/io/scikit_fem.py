@@ -22,7 +22,8 @@ _REMEDY = ("give a Basis of an ElementVector of Lagrange elements of order one o
            "ElementVector(ElementHex1()) or ElementVector(ElementTetP2())")
 # scikit-fem's elements of solids by meshio's names, with the scale and shift of its [0, 1]
 KINDS = {"ElementTetP1": ("tetra", 1, 0), "ElementTetP2": ("tetra10", 1, 0),
-         "ElementHex1": ("hexahedron", 2, -1), "ElementHexS2": ("hexahedron20", 2, -1)}
+         "ElementHex1": ("hexahedron", 2, -1), "ElementHexS2": ("hexahedron20", 2, -1),
+         "ElementHex2": ("hexahedron27", 2, -1)}
 _NAMES = ("x", "y", "z")
 
 

@@ -25,6 +25,7 @@ from sebody.model.inertias import (
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.reduction import ReducedBody
+from sebody.reduction.summary import place
 
 
 def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
@@ -207,7 +208,21 @@ def _check_place(name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
     points = np.array([n.point for n in nodes])
     offset = points - body.coordinates
     error = np.abs(offset - offset.mean(axis=0)).max()
-    if error > 1e-6 * max(np.ptp(points, axis=0).max(), 1e-300):
+    allowed = 1e-6 * max(np.ptp(points, axis=0).max(), 1e-300)
+    if error > allowed:
+        own = ", ".join(place(point) for point in body.coordinates)
         raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
-                         f"boundary nodes are (off by {error:.3g} after the best shift): pass "
-                         "rotation=, the matrix that turns FE axes into global axes")
+                         f"boundary nodes are (off by {error:.3g} after the best shift), at {own}: "
+                         + ("pass rotation=, the matrix that turns FE axes into global axes"
+                            if _turned(points, body.coordinates) <= allowed else
+                            "give the nodes these places, or import the body with theirs "
+                            "(@x,y,z); no rotation= makes them fit"))
+
+
+def _turned(points: NDArray, coordinates: NDArray) -> float:
+    """How far points are off others after the best shift and rotation."""
+    a, b = points - points.mean(axis=0), coordinates - coordinates.mean(axis=0)
+    left, _, right = np.linalg.svd(a.T @ b)
+    turn = left @ right
+    left[:, -1] *= np.sign(np.linalg.det(turn))
+    return float(np.abs(a - b @ (left @ right).T).max())

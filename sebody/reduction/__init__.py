@@ -5,7 +5,7 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.component import ComponentModes
 from sebody.reduction.craig_bampton import component_modes, craig_bampton
 from sebody.reduction.interfaces import MeanFace, RigidFace
-from sebody.reduction.methods import reduce
+from sebody.reduction.methods import free_frequencies, reduce
 from sebody.reduction.weights import body_weights, frame_weights
 
 __all__ = [
@@ -18,5 +18,6 @@ __all__ = [
     "component_modes",
     "craig_bampton",
     "frame_weights",
+    "free_frequencies",
     "reduce",
 ]

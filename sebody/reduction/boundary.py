@@ -40,6 +40,8 @@ class Boundary:
         Of each mean face whose rotation matters: its rows in `means`, and what they are made of.
     notes : tuple of str
         What each boundary node is.
+    stiffened : bool
+        Whether some are rigid faces.
     """
 
     coordinates: NDArray
@@ -51,6 +53,7 @@ class Boundary:
     mean_columns: NDArray
     mean_motions: tuple[tuple[NDArray, NDArray, MeanMotion], ...]
     notes: tuple[str, ...] = ()
+    stiffened: bool = False
 
     @property
     def size(self) -> int:
@@ -140,7 +143,7 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
               for item, motion in motions.items()
               if len(mean_rows[item]["rotation"]) or motion.off_centre),
         tuple(f"boundary node {k}{_name(item)} is {_described(fe_model, item)}"
-              for k, (item, _) in enumerate(pairs)))
+              for k, (item, _) in enumerate(pairs)), bool(rigid))
 
 
 def _name(item: int | RigidFace | MeanFace) -> str:

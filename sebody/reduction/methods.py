@@ -45,9 +45,12 @@ from sebody.reduction.free import check_connected, check_free
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.missing import missing_of
 from sebody.reduction.rigid_motions import strainless_coordinates
+from sebody.reduction.ties import Ties
 from sebody.reduction.watch import SILENT, Watch, watching
 
 METHODS = ("craig-bampton", "guyan", "macneal", "rubin")
+_WITH_FACES = ("; of the body with its rigid faces, which are stiffer than those of the part: mean "
+               "faces (rbe3) do not stiffen it")
 _HELD = 1e-3        # part of a row's forces that rigid motion causes, beyond rounding of digits
 _DEPENDENT = 1e-10  # strain energy of a shape beside those before it, relative to its own
 _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to the largest
@@ -143,7 +146,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     if inputs.flag(judged, "judged") and select is None and method != "macneal":
         told = (free.accuracy() if method == "rubin" else
                 reached(static, interior, matrices, modes))
-        body = replace(body, notes=(*body.notes, f"accuracy: {told}"))
+        body = replace(body, notes=(*body.notes,
+                                    f"accuracy: {told}" + _WITH_FACES * edge.stiffened))
     watch.close()
     return body if recover is None else body.recovering(recover)
 
@@ -209,14 +213,8 @@ class _FreeModes:
 
     def __init__(self, edge: Boundary, stiffness: sparse.csc_array, mass: sparse.csc_array,
                  modes: int | Accuracy, watch: Watch):
-        ties = edge.ties
         self._edge, self._stiffness, self._mass = edge, stiffness, mass
-        rigid = ties.rigid / ties.lengths[:, None]
-        factor = linalg.cholesky(rigid.T @ (mass @ rigid))
-        self.rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
-        momenta = sparse.csr_array((mass @ self.rigid).T)
-        free = ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
-                               ties.lengths, ties.name, watch)
+        free, self.rigid = _free_interior(edge.ties, stiffness, mass, watch)
         count = (_within(free, modes, watch) if isinstance(modes, Accuracy) else
                  check_count(modes, free, "body has {} elastic modes"))
         self.squares, self.elastic = free.vibrations(count)
@@ -241,6 +239,54 @@ class _FreeModes:
         shapes = trial @ turn
         turn = canonical_turn(omega_squared, shapes)
         return replace(static, fixed_interface=shapes @ turn, omega_squared=omega_squared)
+
+
+def _free_interior(ties: Ties, stiffness: sparse.csc_array, mass: sparse.csc_array, watch: Watch
+                   ) -> tuple[ClampedInterior, NDArray]:
+    """The free body without momenta, and its rigid motions of unit modal mass."""
+    rigid = ties.rigid / ties.lengths[:, None]
+    factor = linalg.cholesky(rigid.T @ (mass @ rigid))
+    rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
+    momenta = sparse.csr_array((mass @ rigid).T)
+    return ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
+                           ties.lengths, ties.name, watch), rigid
+
+
+def free_frequencies(fe_model: FEModel, count: int = 6,
+                     progress: Callable[[str], Any] | bool | None = None) -> NDArray:
+    """Lowest elastic frequencies of a free FE model, without any interface.
+
+    Rigid faces of a reduction stiffen a body; the difference to these frequencies says how much.
+    The stiffness is factored once more, so it takes about as long as the modes of a reduction.
+
+    Parameters
+    ----------
+    fe_model : FEModel
+        Free FE model.
+    count : int
+        Number of frequencies.
+    progress : function of a text, or True, optional
+        See `reduce`.
+
+    Returns
+    -------
+    (count,)
+        In cycles per unit of time; fewer if the model has fewer.
+
+    Raises
+    ------
+    InputError
+        A model of several parts or one that is held.
+    """
+    inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
+    count, watch = inputs.integer(count, "count", least=1), watching(progress)
+    ties = Ties(fe_model, ())
+    check_connected(fe_model, ties, fe_model.stiffness)
+    check_free(fe_model, ties, fe_model.stiffness, 0.0)
+    free, _ = _free_interior(ties, fe_model.stiffness, fe_model.mass, watch)
+    squares, _ = free.lowest(min(count, free.count))
+    watch.close()
+    return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
 
 
 def _within(free: ClampedInterior, accuracy: Accuracy, watch: Watch) -> int:

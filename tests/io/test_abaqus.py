@@ -171,6 +171,14 @@ def test_rows_by_number(tmp_path, both):
         read_fe_model(tmp_path / "job_STIF1.mtx")
 
 
+def test_nodes_within_elements_are_named(tmp_path):
+    path = generated(tmp_path)
+    path.write_text(path.read_text() + "-1,1, -1,1, 1.0\n")
+    with pytest.raises(InputError, match="node -1, DOF 1, is a node that Abaqus has made within an "
+                                         "element, as in B33: use B31 or B32"):
+        read_fe_model(path)
+
+
 def test_damping_of_full_matrices_is_a_caution(tmp_path):
     path = generated(tmp_path)
     (tmp_path / "job_DMPV1.mtx").write_text("7,1, 7,1, 1.0\n")

@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError
+from sebody import InputError, Model
+from sebody.fem import hexahedral_block
 from sebody.fem.cylinders import middle_of
 from sebody.io import import_body, read_fe_model
 from sebody.io.interfaces import parsed, tied
+from sebody.reduction import RigidFace, craig_bampton
 
 # as decks.py places its drawings, in which the hole of radius 4 is about z, from 0 to 5
 TURN = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
@@ -85,7 +87,8 @@ def test_a_hole_by_its_place(hole, text):
     """Nodes in the middles of straight edges, which lie within the radius, belong to it."""
     face, _ = interface(hole, text)
     assert sorted(face.nodes) == sorted(hole.node_set("WALL"))
-    np.testing.assert_allclose(face.point, MIDDLE, atol=NUMBERS)
+    # the point that is typed, which is off the mesh's middle, and which models repeat
+    np.testing.assert_array_equal(face.point, [float(word) for word in START.split(",")])
     away = (hole.coordinates[list(face.nodes)] - PLACE) @ TURN
     assert np.hypot(*away[:, :2].T).min() < 3.8
 
@@ -135,3 +138,21 @@ def test_a_label_is_no_index(hole):
     with pytest.raises(InputError, match=r"node 9001 unknown: the model has nodes 0 to \d+ by "
                                          r"their indices; the index of .* is model.node\(9001\)"):
         craig_bampton(hole, [(9001, "translation")], 0)
+
+
+def test_nodes_of_a_model_lie_where_those_of_the_body_are():
+    """The message has the body's places, and speaks of a rotation only where one helps."""
+    block = hexahedral_block((1, 2, 3), (4, 1, 1), (4, 1, 1), 1e4, 0.25, 2.0)
+    ends = [RigidFace((x, 2.5, 3.5), np.flatnonzero(np.isclose(block.coordinates[:, 0], x)))
+            for x in (1, 5)]
+    body = craig_bampton(block, [(face, "full") for face in ends], 1)
+
+    def built(points):
+        model = Model()
+        nodes = [model.node(name, point) for name, point in zip("ab", points, strict=True)]
+        model.superelement("block", body, nodes)
+    with pytest.raises(InputError, match=r"off by 0.0005 .*, at \(1, 2.5, 3.5\), \(5, 2.5, 3.5\): "
+                                         "give the nodes these places.*no rotation= makes"):
+        built([(1, 2.5, 3.5), (5.001, 2.5, 3.5)])
+    with pytest.raises(InputError, match="pass rotation=, the matrix that turns FE axes"):
+        built([(0, 0, 0), (0, 4, 0)])

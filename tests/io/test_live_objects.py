@@ -69,6 +69,7 @@ def kinds():
     box = np.linspace(0, 2, 3), np.linspace(0, 1, 2), np.linspace(0, 1, 2)
     hexahedra, tetrahedra = skfem.MeshHex.init_tensor(*box), skfem.MeshTet.init_tensor(*box)
     pairs = [(hexahedra, skfem.ElementHex1()), (hexahedra, skfem.ElementHexS2()),
+             (hexahedra, skfem.ElementHex2()),
              (tetrahedra, skfem.ElementTetP1()), (tetrahedra, skfem.ElementTetP2())]
     for mesh, element in pairs:
         crooked = mesh.translated(0.03 * np.ones(3))
@@ -212,7 +213,7 @@ def test_models_know_their_stresses():
         expected = np.broadcast_to(elasticity(E, NU) @ strain, stress.shape[:3])
         np.testing.assert_allclose(stress[..., 0], expected, rtol=1e-9)
         found += 1
-    assert found == 4
+    assert found == 5
     skfem = pytest.importorskip("skfem")
     assert skfem_model(skfem.MeshHex(), skfem.ElementHex1(), ()).stress == ()
 

@@ -107,7 +107,26 @@ def in_two_parts() -> FEModel:
                    ("x", "y", "z"), cells=BLOCK.cells)
 
 
+def _without_density(folder: Path) -> None:
+    """A deck whose material has no density, and the matrices of it."""
+    calculix(folder, model=model_of(mass=0 * BLOCK.mass))
+    deck = folder / "se.inp"
+    deck.write_text(deck.read_text() + "*MATERIAL, NAME=LIGHT\n*ELASTIC\n1e4, 0.25\n"
+                    "*SOLID SECTION, ELSET=E, MATERIAL=LIGHT\n")
+
+
+def with_cards(*cards: str) -> Callable[[Path], Any]:
+    """A deck with cards behind its others."""
+    return lines_of("se.inp", lambda lines: [*lines, *cards])
+
+
 CALCULIX = {
+    "a multiple point constraint": Case("se.inp, line 31: CalculiX takes DOFs of nodes that *MPC",
+                                        with_cards("*MPC", "PLANE, 10, 20, 30, 40")),
+    "a distributing coupling": Case("DCOUP3D) in the place of a node of its face", with_cards(
+        "*ELEMENT, TYPE=DCOUP3D, ELSET=C", "77, 10", "*DISTRIBUTING COUPLING, ELSET=C", "20, 1.")),
+    "no density": Case("material LIGHT has no *DENSITY, so the body has no mass",
+                       _without_density),
     "no stiffness": Case("stiffness file", gone("se.sti")),
     "no mass": Case("mass file", gone("se.mas")),
     "no labels": Case("se.dof does not exist: run ccx with *FREQUENCY", gone("se.dof")),

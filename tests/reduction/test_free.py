@@ -1,5 +1,6 @@
 """FE models that are not one free body: the true reason, by name."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,13 +12,14 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, fem
 from sebody.analysis import vibrations
+from sebody.basics.massless import condensed
 from sebody.explore.inspection import inspect
 from sebody.fem import FEModel, hexahedral_block, solid_stress
 from sebody.fem.solids import SolidPrestress
 from sebody.fem.stress import elasticity
+from sebody.io import import_body, read_body_file
 from sebody.io.body_file import BodyFile, body_parts
-from sebody.reduction import MeanFace, ReducedBody, RigidFace, reduce
-from sebody.reduction.massless import condensed
+from sebody.reduction import MeanFace, ReducedBody, RigidFace, free_frequencies, reduce
 
 FE = hexahedral_block((1, 2, 3), (10, 1, 1), (6, 2, 2), 2.1e5, 0.3, 7.85e-9)
 TURN = Rotation.from_rotvec([0.4, -0.7, 0.3]).as_matrix()
@@ -176,3 +178,26 @@ def test_frequencies_of_lumped_masses():
     np.testing.assert_allclose(found.numbers["frequencies"]["flexible"], 2000 / (2 * np.pi))
     assert found.numbers["frequencies"]["following"] == 5
     assert any("5 such motions follow the others statically" in one.text for one in found.findings)
+
+
+def test_what_rigid_faces_stiffen(tmp_path):
+    """Free frequencies are those of the whole matrices; the body's are higher, and noted beside."""
+    found = free_frequencies(FE, 8)
+    squares = eigh(FE.stiffness.toarray(), FE.mass.toarray(), eigvals_only=True)
+    np.testing.assert_allclose(found, np.sqrt(squares[6:14]) / (2 * np.pi), rtol=1e-7)
+    path = fe_files.calculix(tmp_path)
+    names = {"a": "rbe2:LEFT", "b": "rbe2:RIGHT"}
+    import_body(path, names, 0, output=tmp_path / "body.npz", compare_free=True)
+    file = read_body_file(tmp_path / "body.npz")
+    said = file.provenance["free part"]
+    block = fe_files.BLOCK
+    whole = np.sqrt(eigh(block.stiffness.toarray(), block.mass.toarray(),
+                         eigvals_only=True)[6:12]) / (2 * np.pi)
+    body = file.body()
+    own = np.sqrt(eigh(body.stiffness, body.mass, eigvals_only=True)[6:12]) / (2 * np.pi)
+    numbers = re.findall(r"([\d.e+]+) \(([+-][\d.]+)%\)", said)
+    np.testing.assert_allclose([float(one) for one, _ in numbers], whole, rtol=1e-4)
+    np.testing.assert_allclose([float(two) for _, two in numbers], 100 * (own / whole - 1),
+                               atol=0.006)
+    assert said.endswith("tie faces by rbe3 or keep more modes")
+    assert "of the body with its rigid faces, which are stiffer" in file.provenance["accuracy"]

@@ -5,6 +5,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 from scipy import sparse
 
+from sebody.basics.errors import InputError
 from sebody.fem.materials import Material
 from sebody.fem.model import FEModel
 from sebody.io.deck.motion import deck_motion
@@ -57,6 +58,7 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
     follows = np.repeat(motion.known & ~present, 3)
     followers = (sparse.csr_array(sparse.diags_array(follows.astype(float)) @ motion.matrix)
                  if follows.any() else None)
+    light = _without_density(deck, mass)
     model = FEModel(
         stiffness, mass, motion.points,
         dof_map=[(index[label], _NAMES[direction]) for label, direction in dofs],
@@ -65,9 +67,29 @@ def deck_model(deck: Deck, labels: Sequence[int], dofs: Sequence[tuple[int, int]
         stress=deck_stress(solids, motion.points) if related else (), source=source,
         followers=followers, missing=missing,
         materials=_materials(deck))
-    return Reading(model, notes={"geometric stiffness": note} if geometric else {},
+    notes = {"geometric stiffness": note} if geometric else {}
+    if light:
+        notes["materials without density"] = ", ".join(light)
+    return Reading(model, notes=notes,
                    holding=_holding(deck), loading=tuple(
                        deck.card(keyword) for keyword in _LOADING if keyword in deck.places))
+
+
+def _without_density(deck: Deck, mass: sparse.csc_array) -> list[str]:
+    """Materials that sections use and that have no density.
+
+    Raises
+    ------
+    InputError
+        Nothing else has mass.
+    """
+    names = dict.fromkeys(section.material for section in deck.sections)
+    without = [name for name in names
+               if name in deck.materials and not deck.materials[name].density]
+    if without and not mass.diagonal().any():
+        raise InputError(f"deck {deck.path}: material {without[0]} has no *DENSITY, so the body "
+                         "has no mass: give it and run the program again")
+    return without
 
 
 def _holding(deck: Deck) -> dict[int, str]:
