@@ -273,8 +273,9 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
                   if name.startswith(f"{part}.")}
         if fields:
             parts[part] = kind(**fields)
-    parts["loads"] = {name.removeprefix("loads."): array for name, array in arrays.items()
-                      if name.startswith("loads.")}
+    for group in ("loads", "outputs"):
+        parts[group] = {name.removeprefix(f"{group}."): array for name, array in arrays.items()
+                        if name.startswith(f"{group}.")}
     return BodyFile(parts, checked_names(notes["names"], len(parts["coordinates"])),
                     notes["units"], notes["provenance"],
                     tuple(changed(arrays, notes.get("checksums"))))

@@ -24,6 +24,9 @@ from sebody.reduction.checks import RIGID_LIMIT, coordinate_names, rigid_residua
 from sebody.reduction.rigid_motions import rigid_motions
 
 _REMEDY = "write it with EXTSEOUT(STIFFNESS, MASS, ASMBULK, DMIGOP4) or DMIGPCH"
+# beginnings of the names of output matrices: acceleration, displacement, load, stress and other
+# output transformation matrices, and those of EXTSEOUT
+_OUTPUTS = ("atm", "dtm", "ltm", "otm", "stm", "mug", "mes", "mef", "mee", "mqg")
 _CARDS = (".asm", ".pch", ".bdf", ".dat")       # that may hold GRID cards, in this order
 
 
@@ -69,10 +72,25 @@ def read_dmig(path: Path) -> Reading:
     square = {name: frame for name, frame in frames.items() if frame.index.equals(frame.columns)}
     # rows of zeros are not written, so that of rotations without inertia only the stiffness has any
     rows = sorted({key for frame in square.values() for key in frame.index})
-    found = _set({name: frame.reindex(index=rows, columns=rows, fill_value=0.0).to_numpy()
-                  for name, frame in square.items()}, path)
+    whole = {name: frame.reindex(index=rows, columns=rows, fill_value=0.0).to_numpy()
+             for name, frame in square.items()}
+    whole |= {name: _by_rows(frame, rows) for name, frame in frames.items()
+              if name.startswith(_OUTPUTS)}
+    found = _set(whole, path)
     own = path.suffix == ".pch" and "GRID" in read_text(path, "punch file", _REMEDY)
     return _reading(found, rows, _grids(path if own else _beside(path)), path)
+
+
+def _by_rows(frame: Any, rows: list) -> NDArray:
+    """An output matrix with a column for each row of the stiffness.
+
+    Its own columns are named by nodes and directions (form 2), or counted (form 9).
+    """
+    if frame.columns.nlevels == 2:
+        return frame.reindex(columns=rows, fill_value=0.0).to_numpy()
+    whole = np.zeros((len(frame), max(len(rows), max(frame.columns, default=0))))
+    whole[:, np.array(frame.columns, dtype=int) - 1] = frame.to_numpy()
+    return whole
 
 
 def _check_once(path: Path) -> None:
@@ -115,11 +133,14 @@ class Found(NamedTuple):
         What the file calls the last.
     structural : tuple of str
         What it calls structural damping.
+    outputs : dict of (m, n)
+        Matrices of what inner points do, by their names.
     """
 
     matrices: dict[str, NDArray]
     damping: str
     structural: tuple[str, ...]
+    outputs: dict[str, NDArray]
 
 
 def _reading(found: Found, index: list, table: Any, path: Path) -> Reading:
@@ -137,7 +158,8 @@ def _reading(found: Found, index: list, table: Any, path: Path) -> Reading:
             if None not in rows_of_node:
                 turn[np.ix_(rows_of_node, rows_of_node)] = axes       # output from basic components
     turned = {name: turn.T @ matrix @ turn for name, matrix in found.matrices.items()}
-    parts, names, left = reduced_parts(turned, rows, points, str(path))
+    outputs = {name: matrix @ turn for name, matrix in found.outputs.items()}
+    parts, names, left = reduced_parts(turned, rows, points, str(path), outputs)
     _check_systems(parts, reduced_parts(found.matrices, rows, points, str(path))[0],
                    [node for node, axes in turns.items() if not np.allclose(axes, np.eye(3))], path)
     parts, notes = with_damping(parts, found.damping, found.structural)
@@ -227,7 +249,7 @@ def _set(found: dict[str, NDArray], path: Path) -> Found:
         ending = name[1:]
         if not name.startswith("k") or "m" + ending not in found:
             continue
-        called = {"stiffness": name, "mass": "m" + ending, "damping": "b" + ending}
+        called = {"stiffness": name, "mass": "m" + ending, "damping": _damping(found, "b" + ending)}
         matrices = {what: found[own] for what, own in called.items() if own in found}
         for what, matrix in matrices.items():
             if matrix.shape != stiffness.shape or matrix.shape[0] != matrix.shape[1]:
@@ -235,16 +257,34 @@ def _set(found: dict[str, NDArray], path: Path) -> Found:
                                  f"{matrix.shape}: {_REMEDY}")
             if what != "stiffness" and np.any(np.imag(matrix)):
                 raise InputError(f"{path}: {called[what]} is complex: write real matrices")
-        own = "k4" + ending
+        own = _damping(found, "k4" + ending)
         structural = [own.upper()] if np.any(found.get(own, 0)) else []
         if np.any(np.imag(stiffness)):
             structural.append(f"the imaginary part of {name.upper()}")
         return Found({what: np.asarray(np.real(matrix), dtype=float)
                       for what, matrix in matrices.items()}, called["damping"].upper(),
-                     tuple(structural))
+                     tuple(structural), _outputs(found, len(stiffness), path))
     have = ", ".join(found) or "none"
     raise InputError(f"{path} has no pair of matrices KXX and MXX, or KAAX and MAAX; it has "
                      f"{have}: {_REMEDY}")
+
+
+def _damping(found: dict[str, NDArray], name: str) -> str:
+    """The name of a damping matrix, which EXTSEOUT writes with a 1, as a placeholder if empty."""
+    numbered = name + "1"
+    return numbered if name not in found and found.get(numbered, np.zeros(1)).size > 1 else name
+
+
+def _outputs(found: dict[str, NDArray], size: int, path: Path) -> dict[str, NDArray]:
+    """Matrices of displacements, forces and stresses of inner points by the rows of the stiffness.
+    """
+    outputs = {name.upper(): np.asarray(matrix) for name, matrix in found.items()
+               if name.startswith(_OUTPUTS) and matrix.size > 1}      # others are placeholders
+    for name, matrix in outputs.items():
+        if matrix.ndim != 2 or matrix.shape[1] != size or np.any(np.imag(matrix)):
+            raise InputError(f"{path}: the output matrix {name} has shape {matrix.shape}, or is "
+                             f"complex: it needs {size} columns, one for each row of the stiffness")
+    return {name: np.real(matrix).astype(float) for name, matrix in outputs.items()}
 
 
 def _called(function: Callable[[], Any], path: Path) -> Any:

@@ -1,6 +1,7 @@
 """Bodies that an FE program has reduced: rows by node and direction, and rows of modes."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
 def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int] | None],
-                  points: Mapping[int, NDArray], source: str
+                  points: Mapping[int, NDArray], source: str,
+                  outputs: Mapping[str, NDArray] = MappingProxyType({})
                   ) -> tuple[dict, tuple[str, ...], dict[str, str]]:
     """Arguments of a `ReducedBody`, its nodes' labels as names, and a note of what is left out.
 
@@ -31,6 +33,8 @@ def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int
         Nodes [length].
     source : str
         Where the rows come from, for messages.
+    outputs : mapping of (m, n) by name
+        Output matrices of these rows.
 
     Raises
     ------
@@ -53,6 +57,8 @@ def reduced_parts(matrices: Mapping[str, NDArray], rows: Sequence[tuple[int, int
     order += modes
     chosen = np.ix_(order, order)
     return {**{name: matrix[chosen] for name, matrix in matrices.items()},
+            **({"outputs": {name: matrix[:, order] for name, matrix in outputs.items()}}
+               if outputs else {}),
             "coordinates": np.array([points[label] for label in labels], dtype=float),
             "keeps": tuple(keeps), "modes": len(modes)}, tuple(map(str, labels)), _note(left)
 
@@ -129,6 +135,8 @@ def chosen_interfaces(file: BodyFile, labels: Sequence[str], names: Sequence[str
     chosen = np.ix_(rows, rows)
     changed = {name: parts[name][chosen] for name in ("stiffness", "mass", "damping")
                if parts.get(name) is not None}
+    if parts.get("outputs"):
+        changed["outputs"] = {name: matrix[:, rows] for name, matrix in parts["outputs"].items()}
     return BodyFile({**parts, **changed, "coordinates": parts["coordinates"][order],
                      "keeps": tuple(keeps[k] for k in order)}, tuple(names), file.units,
                     file.provenance)

@@ -1,10 +1,13 @@
-"""Names of the FE nodes inside superelements: ``<body>.node<k>``."""
+"""What is inside superelements: FE nodes, ``<body>.node<k>``, and outputs, ``<body>.<output>``."""
 
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sebody.quantities.numbers import Parts
+from sebody.quantities.algebra import total
+from sebody.quantities.expressions import Number
+from sebody.quantities.numbers import Numbers, Parts
 from sebody.reduction.recovery import Recovery
 
 UNITS = {"position": "length", "velocity": "length/time", "acceleration": "length/time^2",
@@ -32,6 +35,19 @@ class FENodes:
         for name, recovery in self._bodies.items():
             yield from (f"{name}.node{recovery.called(place)}"
                         for place in range(len(recovery.coordinates)))
+
+
+def outputs(of: Parts) -> dict[str, NDArray]:
+    """Output matrices of bodies, by ``<body>.<output>``."""
+    return {f"{name}.{output}": matrix for name, body in of.model.bodies.items()
+            for output, matrix in body.reduced.outputs.items()}
+
+
+def output(of: Numbers, owner: str) -> list[Number]:
+    """An output matrix times the reduced coordinates of its body, relative to the frame."""
+    local = of.local(owner.rpartition(".")[0])
+    return [total(float(x) * y for x, y in zip(row, local, strict=True) if x != 0.0)
+            for row in outputs(of)[owner]]
 
 
 def number_of(recovery: Recovery, node: int) -> int | None:

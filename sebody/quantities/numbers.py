@@ -73,6 +73,10 @@ class Numbers:
         """A quantity of an FE node inside a body."""
         raise NotImplementedError
 
+    def local(self, body: str) -> list[Number]:
+        """Reduced coordinates of a body, relative to its frame."""
+        raise NotImplementedError
+
     def coordinates(self, part: str, block: DofBlock) -> list[Number]:
         """Coordinates of a DOF block, their rates or second rates; of the ground as they stay."""
         if block not in self.numbering.dof_blocks:

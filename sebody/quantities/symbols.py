@@ -64,6 +64,9 @@ class Symbols(Numbers):
         self._refuse_redundant()
         return self.tape.read(TOTAL, k)
 
+    def local(self, body: str) -> list[Number]:
+        raise NoTape("outputs of bodies")
+
     def energy(self, k: int) -> Number:
         return self.tape.read(ENERGY, k)
 

@@ -16,8 +16,8 @@ from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
 
 FE_NODE = "node inside a body"
-OPTIONAL = PRESSING, SIGNAL, CONTROLLER = (     # told of models that have some
-    "contact, stop or friction", "sensor, signal or actuator", "controller")
+OPTIONAL = PRESSING, SIGNAL, CONTROLLER, OUTPUT = (     # told of models that have some
+    "contact, stop or friction", "sensor, signal or actuator", "controller", "output of a body")
 
 
 def _always(of: Parts, owner: str) -> bool:
@@ -204,6 +204,8 @@ OWNERS = (
     Owner(CONTROLLER, "of controllers {quantities}", lambda of: of.model.controllers,
           {"states": Quantity(motion.states, numbered=True,
                               has=lambda of, owner: of.model.controllers[owner].states.size > 0)}),
+    Owner(OUTPUT, "of outputs of bodies {quantities}", inside.outputs,
+          {"values": Quantity(inside.output, numbered=True)}),
     # the last one: its names are too many to be searched for names like another
     Owner(FE_NODE, "; of FE nodes, <body>.node<k>, {quantities}", inside.FENodes, INSIDE),
 )

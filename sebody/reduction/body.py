@@ -20,7 +20,7 @@ from sebody.reduction import checks
 from sebody.reduction.damping import modal_damping
 from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
-from sebody.reduction.loads import named_vectors
+from sebody.reduction.loads import named_outputs, named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
@@ -69,6 +69,9 @@ class ReducedBody:
         How the body was made, in sentences, for `summary`.
     loads : mapping of str to (n,), optional
         Reduced loads by name, ``Phi^T p``; see `Model.body_load`.
+    outputs : mapping of str to (m, n)
+        Output matrices by name, such as stresses of unit reduced coordinates that an FE program has
+        computed: the quantities ``<body>.<name>.values`` of results.
     missing : mapping of str to str
         Why the body has no 'stresses', 'stiffening' or 'exact inertia', ``why; what to do``.
     materials : tuple of Material
@@ -96,6 +99,7 @@ class ReducedBody:
     missing: Mapping[str, str] = field(default_factory=dict)
     materials: tuple[Material, ...] = ()
     units: str = ""
+    outputs: Mapping[str, NDArray] = field(default_factory=dict)
     # of a rotated body what it was made of, and the rotation; `replace` does not take it over
     _made_of: tuple[ReducedBody, NDArray] | None = field(default=None, init=False, repr=False)
 
@@ -140,6 +144,8 @@ class ReducedBody:
                            self.invariants and self.invariants.slaved)
         loads = named_vectors(self.loads, len(names), "coordinates of the body")
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
+        object.__setattr__(self, "outputs", {name: _read_only(matrix) for name, matrix in
+                                             named_outputs(self.outputs, len(names)).items()})
         object.__setattr__(self, "missing", checked_missing(self.missing))
         object.__setattr__(self, "materials", checked_materials(self.materials))
         object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
@@ -339,4 +345,5 @@ class ReducedBody:
             invariants=self.invariants and self.invariants.rotated(rotation, by),
             recovery=self.recovery and self.recovery.rotated(rotation, by),
             loads={name: by @ load for name, load in self.loads.items()},
+            outputs={name: matrix @ by.T for name, matrix in self.outputs.items()},
         )

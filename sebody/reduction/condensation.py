@@ -90,7 +90,8 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         body.recovery and _recovery(body, basis, gone, keeps, len(massive)),
         (*body.notes, f"{kind} of boundary node {node} released"),
         {name: basis.T @ load for name, load in body.loads.items()},
-        body.missing, body.materials, body.units)
+        body.missing, body.materials, body.units,
+        outputs={name: matrix @ basis for name, matrix in body.outputs.items()})
     kept = min(body.modes if modes is None else modes, len(massive))
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 

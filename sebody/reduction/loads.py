@@ -51,6 +51,20 @@ def named_vectors(loads: Mapping[str, ArrayLike], size: int, entries: str) -> di
     return vectors
 
 
+def named_outputs(outputs: Mapping[str, ArrayLike], size: int) -> dict[str, NDArray]:
+    """Output matrices (m, size) by name, as new arrays.
+
+    Raises
+    ------
+    InputError
+        Names that are no texts, or matrices with another number of columns or with entries that
+        are not finite.
+    """
+    inputs.instance(outputs, "outputs", Mapping, "give a dict of matrices by name")
+    return {inputs.name(name, "name of an output"): np.array(inputs.array(
+        matrix, f"output {name!r}", (None, size))) for name, matrix in outputs.items()}
+
+
 def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
                         mass: sparse.csc_array, forces: NDArray) -> ComponentModes:
     """The modes with those that make the static responses to forces (n, k) exact.

@@ -120,6 +120,7 @@ def _even_body(body: ReducedBody, kept: NDArray, odd: tuple[str, ...],
         int((~kept[:held].any(axis=0)).sum()), damping, constants, recovery,
         notes=(*body.notes, "motion in a plane of symmetry"),
         loads={name: kept.T @ body.loads[name] for name in even},
+        outputs={name: matrix @ kept for name, matrix in body.outputs.items()},
         missing=missing, materials=body.materials, units=body.units)
 
 

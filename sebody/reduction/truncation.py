@@ -55,7 +55,8 @@ def truncated(body: ReducedBody, modes: int) -> ReducedBody:
         invariants=body.invariants and _truncated_invariants(body, size),
         recovery=body.recovery and _truncated_recovery(body, size),
         notes=(*body.notes, f"{modes} of {body.modes} internal modes kept"),
-        loads={name: load[first] for name, load in body.loads.items()})
+        loads={name: load[first] for name, load in body.loads.items()},
+        outputs={name: matrix[:, first] for name, matrix in body.outputs.items()})
 
 
 def _kept(size: int, before: int, count: int) -> NDArray:

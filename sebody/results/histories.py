@@ -13,6 +13,7 @@ from sebody.model.parts import Node
 from sebody.quantities.balance import Part, balance
 from sebody.quantities.numbers import Numbers
 from sebody.results.field_quantities import fe_node
+from sebody.results.motion import body_motion
 from sebody.results.recording import Recording
 
 
@@ -55,6 +56,13 @@ class Histories(Numbers):
 
     def inside(self, node: str, quantity: str) -> NDArray:
         return getattr(fe_node(self.recording, node), quantity)
+
+    def local(self, body: str) -> list[NDArray]:
+        key = f"{body} in its frame"
+        if key not in self.made:
+            motion = body_motion(self.recording, self.model.bodies[body], slice(None))
+            self.made[key] = list(motion.y.T)
+        return self.made[key]
 
     def whole(self, value: Any) -> NDArray:
         """A formula's number, vector or matrix as an array (n, ...)."""

@@ -43,6 +43,9 @@ class States(Symbols):
     def inside(self, node: str, quantity: str) -> Any:
         return nodal.inside(self, node, quantity)
 
+    def local(self, body: str) -> list[Number]:
+        return self.motion(body)["y"]
+
     def motion(self, body: str) -> dict[str, list[Number]]:
         """Numbers of the motion of a body, by the parts of `layout.MOTION`."""
         if body not in self.bodies:

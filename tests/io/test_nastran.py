@@ -35,6 +35,8 @@ def test_superelements_in_op4(name, modes):
     ours = eigh(body.mass, body.stiffness + body.mass, eigvals_only=True)
     theirs = eigh(matrices["mxx"], matrices["kxx"] + matrices["mxx"], eigvals_only=True)
     np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-12 * ours[-1])
+    # displacements of its output set by its boundary and modes, as Nastran computed them
+    assert body.outputs["MUG1"].shape == matrices["mug1"].shape
     table = nastran.asm2uset(str(path.with_suffix(".asm")))[0]
     motions = nastran.rbgeom_uset(table[table.index.get_level_values("dof") > 0])
     gyration = motions.T @ matrices["mxx"][:24, :24] @ motions
@@ -138,12 +140,13 @@ def test_damping(tmp_path):
     assert any(said in caution for caution in body.cautions)
 
 
-def test_damping_in_op4(tmp_path):
+@pytest.mark.parametrize("ending", ["", "1"])
+def test_damping_in_op4(tmp_path, ending):
     """Turned and put in order as the stiffness is."""
     matrices = op4.read(str(DATA / "beam.op4"), into="dct", justmatrix=True)
     name = next(name for name in matrices if name.lower().startswith("k"))
     path = tmp_path / "beam.op4"
-    op4.write(str(path), {**matrices, f"b{name[1:]}": 0.01 * matrices[name]})
+    op4.write(str(path), {**matrices, f"b{name[1:]}{ending}": 0.01 * matrices[name]})
     path.with_suffix(".asm").write_bytes((DATA / "beam.asm").read_bytes())
     body = import_body(path, {"tip": 2, "root": 1})
     np.testing.assert_allclose(body.damping, 0.01 * body.stiffness,

@@ -57,7 +57,9 @@ def to_json(inspection: Inspection) -> str:
     """Everything, for programs."""
     file = inspection.file
     layout = {"names": file.names, "keeps": file.parts["keeps"],
-              "modes": file.parts.get("modes", 0), "coordinates": file.parts["coordinates"]}
+              "modes": file.parts.get("modes", 0), "coordinates": file.parts["coordinates"],
+              "outputs": {name: len(matrix) for name, matrix in
+                          (file.parts.get("outputs") or {}).items()}}
     whole = {"layout": layout, "units": file.units, "provenance": dict(file.provenance),
              **inspection.numbers, "findings": [one._asdict() for one in inspection.findings],
              "usable": inspection.usable, "verdict": inspection.verdict}
@@ -80,6 +82,8 @@ def _layout(file: BodyFile) -> list[tuple[str, str]]:
     rows.append(("units", file.units or "not said"))
     rows += [("interface", f"{name} keeps {keep}, at {_row(point)}") for name, keep, point
              in zip(file.names, file.parts["keeps"], coordinates, strict=True)]
+    rows += [("output", f"{name}.values, {len(matrix)} numbers")
+             for name, matrix in (file.parts.get("outputs") or {}).items()]
     return [*rows, ("internal modes", str(file.parts.get("modes", 0)))]
 
 
