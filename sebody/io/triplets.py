@@ -91,7 +91,10 @@ def symmetric(rows: NDArray, columns: NDArray, values: NDArray, size: int) -> sp
         entry = int(order[1:][np.diff(places[order]) == 0].min())
         raise WrongEntry("occurs twice", entry)
     if not _overlap(rows, columns, size):
-        return sparse.csc_array(matrix + matrix.T - sparse.diags_array(matrix.diagonal()))
+        off = rows != columns
+        entries = np.concatenate([values, values[off]])
+        places = (np.concatenate([rows, columns[off]]), np.concatenate([columns, rows[off]]))
+        return sparse.csc_array(sparse.coo_array((entries, places), shape=(size, size)))
     unlike = unsymmetric_entry(matrix)
     if unlike is None:
         return sparse.csc_array((matrix + matrix.T) / 2)

@@ -32,12 +32,12 @@ def _sid_entry(folder: Path) -> None:
 
 
 def _entry_of(folder: Path, name: str, text: str, at: str = "m0(") -> None:
-    """Another first entry of a matrix, or one behind a size."""
+    """Another line in the place of the first one of a matrix that has a text."""
     path = folder / "body.SID_FEM"
     lines = path.read_text().splitlines()
     start = next(k for k, line in enumerate(lines) if line.strip() == name)
     k = next(k for k in range(start, len(lines)) if at in lines[k])
-    lines[k:k + 1] = ["      " + text] if at == "m0(" else [lines[k], "      " + text]
+    lines[k] = "      " + text
     path.write_text("\n".join(lines) + "\n")
 
 
@@ -110,18 +110,18 @@ OTHERS = {
         "cut within a matrix": Case("it is cut off", lines_of("body.SID_FEM", lambda ls: ls[:-8])),
         "no nodes": Case("has no node", lines_of("body.SID_FEM", lambda ls: [
             line for line in ls if "new node" not in line])),
-        "an entry without =": Case("m0(   1,   1) 1.0' is no entry of Me, which begins in line",
+        "an entry without =": Case("m0( 1, 1) 1.0' is no entry of Me, which begins in line",
                                    lambda folder: _entry_of(folder, "Me", "m0(   1,   1) 1.0")),
         "an entry cut in two": Case("is no entry of Me, which", lambda folder: _entry_of(
             folder, "Me", "m0(   1,")),
         "an entry that Fortran could not print": Case("is not a number", lambda folder: _entry_of(
             folder, "Me", "m0(   1,   1) = ******")),
-        "an entry twice": Case("m0(1, 1) of Me occurs twice", lines_of("body.SID_FEM", lambda ls: [
+        "an entry twice": Case("m0(1, 1) of phi occurs twice", lines_of("body.SID_FEM", lambda ls: [
             two for line in ls for two in [line] * (1 + ("m0(   1,   1)" in line))])),
         "the beginning of a matrix lost": Case("belongs to no matrix", lines_of(
             "body.SID_FEM", lambda ls: [line for line in ls if line.strip() != "Me"])),
         "one triangle called full": Case("Me is not symmetric, m0(", lambda folder: _entry_of(
-            folder, "Me", "m0(   1,   2) = 1.0D0", "nqn")),
+            folder, "Me", "m0(   1,   2) = 1.0D0", "m0(   1,   2)")),
         "negative stiffness": Case("has the stiffness -", lambda folder: _negative(folder, "Ke")),
         "negative modal mass": Case("has the mass -", lambda folder: _negative(folder, "Me")),
     },
