@@ -197,7 +197,7 @@ class _Part:
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
                 self.tables[name] = OfTable([
-                    Part(residuals, weights(one.model, column, history, *value))
+                    Part(residuals, weights(one.model, column, run.grid, history, *value))
                     for residuals, *value in self.slopes.by_load(port)])
 
     def slope(self, column: Column) -> Slope:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.close_rows import Grid, close_corners
 from sebody.assembly.numbering import Numbering
 from sebody.model.time_functions import TimeFunction
 
@@ -29,7 +30,7 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
         Of the run [time].
     """
     for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
-        times = _known(time_function)
+        times = _known(time_function, h)
         times = times[(times > begin) & (times < end)]
         if not times.size:
             continue
@@ -90,9 +91,9 @@ def _jump(function: Callable[[float], float],
     return None
 
 
-def _known(time_function: TimeFunction) -> NDArray:
-    """Times at which a time function may have a peak."""
+def _known(time_function: TimeFunction, h: float) -> NDArray:
+    """Times at which a time function may have a peak that steps miss: none of close rows."""
     if not time_function.functions:
-        return np.array(time_function.times)
+        return np.setdiff1d(time_function.times, close_corners(time_function, Grid(h, fixed=True)))
     corners = np.array(time_function.corners)
     return np.concatenate([corners, (corners[1:] + corners[:-1]) / 2])

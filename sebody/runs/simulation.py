@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.engine.loop import advance
@@ -86,6 +87,8 @@ class Simulation:
         violates them, or variable steps with constraints of index 3.
     """
 
+    gives_loads_to_steps = True     # see `sebody.assembly.close_rows`
+
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None,
                  start: Result | None = None, threads: int = 1):
@@ -99,7 +102,8 @@ class Simulation:
         threads = checked_threads(threads)
         user_faults.refuse_changed(model)
         prepare([model])
-        self.system, self.numbering = build(model, threads)
+        self.grid = Grid(self.h, tolerance is None) if self.gives_loads_to_steps else None
+        self.system, self.numbering = build(model, threads, self.grid)
         self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
@@ -317,6 +321,12 @@ class Simulation:
                              "joints at t = 0")
         state.control.matrices = 0
         state.aux_old[:] = state.aux
+
+
+class Standstill(Simulation):
+    """The start of a model that no steps follow: its loads are as they were given at any time."""
+
+    gives_loads_to_steps = False
 
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
