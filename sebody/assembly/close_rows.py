@@ -101,7 +101,8 @@ def of_steps(time_function: TimeFunction, jumps: Sequence[float], grid: Grid
         return time_function, list(jumps)
     outside = [t for t in time_function.corners if not found.inside(t)]
     begun = sorted({*[t for t in jumps if not found.inside(t)], *found.times.ravel().tolist()})
-    return replace(_replaced(time_function, found), corners=tuple(sorted({*outside, *begun}))), begun
+    corners = tuple(sorted({*outside, *begun}))
+    return replace(_replaced(time_function, found), corners=corners), begun
 
 
 def stretches(time_function: TimeFunction, grid: Grid) -> Stretches | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +23,10 @@ from sebody.explore.ensembles.start_values import Image
 from sebody.explore.ensembles.work import Work, processors
 from sebody.model.model import Model
 from sebody.model.summary import summary
+from sebody.model.variants.copying import copied
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
+from sebody.runs.fingerprint import whole
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
@@ -39,7 +42,7 @@ class Ensemble:
     Parameters
     ----------
     model : Model
-        Must not be changed while runs go on; `run` leaves it as it was.
+        Is copied: what becomes of it later changes nothing here.
     h : float
         Fixed step, also the output grid [time].
     scheme : Scheme, optional
@@ -66,16 +69,21 @@ class Ensemble:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, start: Result | None = None):
-        self.model, self.scheme = model, scheme
-        self._template = Simulation(model, h, scheme, output_every, start=start)
+        self.model, self.scheme = cast(Model, copied(model)), scheme
+        self._template = Simulation(self.model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
-        self._lock = Lock()         # the model is changed for moments
+        self._lock = Lock()         # the copy is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
 
     def __repr__(self) -> str:
         reason = why_one_by_one(self._template)
         how = f"one by one: {reason}" if reason else "eight at a time if they are many"
         return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}; runs {how}>"
+
+    @property
+    def identity(self) -> str:
+        """Hash of all that runs follow from, the same in every process."""
+        return whole(self._template)
 
     @property
     def parameters(self) -> list[str]:
