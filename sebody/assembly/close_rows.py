@@ -19,9 +19,11 @@ from scipy import sparse
 from sebody.assembly.numbering import Numbering
 from sebody.model.time_functions import TimeFunction
 
-FIXED, CHOSEN = 2**10, 2**17    # parts of an output interval at which levels begin and end
+# parts of an output interval at which levels begin and end: longer than restarts look ahead
+FIXED, CHOSEN = 2**9, 2**10
+# least parts over which what is held at the grid is made up for
+SPREAD_FIXED, SPREAD_CHOSEN = 64, 8
 SHORT = 1e-3            # of an output interval: corners that are close for steps that are chosen
-SPREAD = 128            # least parts over which what a level on the grid lacks is made up for
 SAME = 1e-6             # of a step: times that are as near are one
 ROUNDED = 1e-9          # of a part, by which rounding may put a time off
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(6)    # exact for polynomials of degree eleven
@@ -40,7 +42,13 @@ class Grid(NamedTuple):
 
     @property
     def parts(self) -> int:
+        """Parts of an output interval."""
         return FIXED if self.fixed else CHOSEN
+
+    @property
+    def spread(self) -> int:
+        """Parts that levels take at least which begin at the grid."""
+        return SPREAD_FIXED if self.fixed else SPREAD_CHOSEN
 
 
 class Stretches(NamedTuple):
@@ -116,7 +124,7 @@ def stretches(time_function: TimeFunction, grid: Grid) -> Stretches | None:
     last = np.ceil(ends[:, 1] - ROUNDED).astype(int)
     on_grid = first <= 0
     first = np.where(on_grid, 1, first)
-    last = np.minimum(np.maximum(last, first + np.where(on_grid, SPREAD, 1)), parts)
+    last = np.minimum(np.maximum(last, first + np.where(on_grid, grid.spread, 1)), parts)
     middle = np.where(last - first > 1, (first + last) // 2, last)
     return Stretches(
         np.where(on_grid, k * grid.h, (k + first / parts) * grid.h),

@@ -25,19 +25,18 @@ def wheel(*torques):
     return model
 
 
-def turned_wheel(*torques):
-    """A wheel off its hinge, in space and turned, with multipliers: two bodies and a second pin."""
+def turned_cart(*forces):
+    """A cart in space that slides along a turned axis, with a weight on it, and multipliers."""
     model = Model()
     axis = TURN[2]
     model.node("hub", (1.0, 2.0, 3.0))
     model.node("rim", (1.0, 2.0, 3.0) + 0.8 * TURN[0], keeps="translation")
-    inertia = TURN.T @ np.diag([0.4, 0.5, INERTIA - 1.0]) @ TURN
-    model.rigid_body("wheel", "hub", 2.0, inertia)
-    model.point_mass("weight", "rim", 1.0 / 0.8**2)
-    model.revolute("hub", axis=axis, name="pin")
+    model.rigid_body("cart", "hub", INERTIA - 0.6, np.eye(3))
+    model.point_mass("weight", "rim", 0.6)
+    model.prismatic("hub", axis=axis, name="rail")
     model.spherical("rim", to=model.attach("spoke", model.nodes["rim"].point, "hub"))
-    for torque in torques:
-        model.torque("hub", axis, torque)
+    for force in forces:
+        model.force("hub", axis, force)
     return model
 
 
@@ -73,9 +72,13 @@ def integrals(table, times):
 def assert_integrals(result, *tables, rate=1e-12, angle=1e-9):
     found = [integrals(np.asarray(table), result.t) for table in tables]
     first, second = np.sum(found, axis=0) / INERTIA
-    turned = result["pin.rate"] if result["pin.rate"].ndim == 1 else result["pin.rate"][:, 0]
-    assert np.abs(turned - first).max() < rate * max(1.0, np.abs(first).max())
-    assert np.abs(result["pin.angle"] - second).max() < angle
+    if "rail" in {joint.name for joint in result.model.joints}:
+        speed, way = ((result[name] - result[name][0]) @ TURN[2]
+                      for name in ("rim.velocity", "rim.position"))
+    else:
+        speed, way = result["pin.rate"], result["pin.angle"]
+    assert np.abs(speed - first).max() < rate * max(1.0, np.abs(first).max())
+    assert np.abs(way - second).max() < angle
 
 
 @pytest.mark.parametrize("apart", [1e-9, 1e-6, 1e-3, 0.009])
@@ -89,13 +92,14 @@ def test_jumps_written_as_two_rows(apart, begin, h):
     assert_integrals(simulate(wheel(table), h, END), table)
 
 
-@pytest.mark.parametrize("make", [wheel, turned_wheel])
+@pytest.mark.parametrize("make", [wheel, turned_cart])
 @pytest.mark.parametrize("stabilized", [False, True])
 def test_blows_and_several_tables_at_once(make, stabilized):
     tables = blows(1e-6), reversal(1e-6), reversal(1e-4, 1.0 + OFF)
     scheme = generalized_alpha(0.9, index=2 if stabilized else 3, tolerance=1e-13)
     result = simulate(make(*tables), 0.01, END, scheme)
-    assert_integrals(result, *tables, rate=1e-11 if make is turned_wheel else 1e-12, angle=1e-7)
+    # constraints see positions of four lengths: their rounding in parts of steps, h / 512
+    assert_integrals(result, *tables, rate=1e-12 if make is wheel else 1e-9)
 
 
 @pytest.mark.parametrize("apart", [1e-9, 1e-6])

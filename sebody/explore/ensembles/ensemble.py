@@ -15,7 +15,7 @@ from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
-from sebody.explore.ensembles.handles import given, handles
+from sebody.explore.ensembles.handles import given, handles, refused
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output, outputs_of
@@ -119,7 +119,8 @@ class Ensemble:
         ------
         InputError
             Before the first run: unknown names, arrays of different lengths, values that a body
-            cannot have, an unknown quantity, a time that is not a multiple of the step.
+            cannot have, an unknown quantity, a time that is not a multiple of the step. Runs with
+            values that a builder refuses, such as limits that leave no room, fail alone.
         """
         return self._run(parameters, t_end, outputs, threads, progress)
 
@@ -151,6 +152,8 @@ class Ensemble:
         read = forms(self._template, kept)
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, read, runs, last)
+        with self._lock:
+            outcome.failures |= refused(self.model, found, values, runs)
         began = time.perf_counter()
         image = self._image(found)
         in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)
