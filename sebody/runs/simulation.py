@@ -30,7 +30,7 @@ from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
 from sebody.runs.progress import showing
-from sebody.runs.pulses import unseen, untold
+from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
@@ -187,6 +187,8 @@ class Simulation:
         if self.state.control.adaptive == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
+            for name, message in divided(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"rows {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
         record = self.rows.record_until(last)
