@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, Simulation, Tolerance, rest_to_rest, simulate, with_corners
+from sebody import (
+    LimitWarning,
+    Model,
+    Simulation,
+    Tolerance,
+    rest_to_rest,
+    simulate,
+    with_corners,
+)
 from sebody.analysis import Ensemble, equilibrium, final, gradient
 from sebody.runs.schemes import generalized_alpha
 
@@ -161,6 +169,19 @@ def test_what_no_step_follows_has_the_table_as_given():
     model = wheel([(0.0, 0.0), (0.25, 5.0), (0.3, 0.0)])
     model.torsion_spring("hub", 10.0, name="coil")
     assert equilibrium(model, t=0.1)["pin.angle"][-1] == pytest.approx(0.2, rel=1e-9)
+
+
+def test_many_divided_steps_are_said():
+    """A table with rows ten times as dense as steps; its integral is kept in few parts of each."""
+    t = np.linspace(0.0, 2.0, 2001)
+    table = np.column_stack([t, np.sin(40.0 * t) + 0.3 * np.sin(1500.0 * t)])
+    table[-1, 1] = 0.0
+    with pytest.warns(LimitWarning, match="rows of the table of torque on hub.rotation are closer "
+                      "than the step of 0.01 in 200 steps: .* divided into as many as four"):
+        run = Simulation(wheel(table), 0.01).run_to(END)
+        result = run.result()
+    assert_integrals(result, table, rate=1e-11)
+    assert run.state.control.steps <= 200 * 4 + 100
 
 
 def test_steps_end_at_the_rows_and_the_run_begins_with_the_table():
