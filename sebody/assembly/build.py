@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
+from sebody.assembly.close_rows import Grid, given_to_steps
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
@@ -28,8 +29,11 @@ from sebody.model.parts import Element
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
 
-def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
+def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
+          ) -> tuple[System, Numbering]:
     """Flat arrays of a model; of a large one also what some threads need to share its steps.
+
+    Loads are as they were given, or with a `grid` as its steps are given them.
 
     Raises
     ------
@@ -47,8 +51,8 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
     batches = make_batches(model, numbering)
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
-    ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
-                        numbering.memory.inputs)
+    time_functions, jumps = given_to_steps(numbering, grid)
+    ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs)
     slots = own.system["slot_unknowns"].size
     system = System(
         shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),

@@ -39,6 +39,7 @@ class Numbering(NamedTuple):
     bristles: dict[Element, float] = {}     # element -> stiffness of its bristles in the run
     reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
+    forced: list[bool] = []             # of every power port: whether it is of a load
 
     @property
     def memories(self) -> dict[Element, list[int]]:
@@ -131,7 +132,7 @@ def number(model: Mechanism) -> Numbering:
     ports = number_ports(model, order.at)
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
-                     ports.prescribed, np.array(groups), jumps=ports.jumps,
+                     ports.prescribed, np.array(groups), jumps=ports.jumps, forced=ports.forced,
                      memory_map=memory_map(model, ports.of), reads=_reads(model, order.multipliers))
 
 

@@ -23,21 +23,25 @@ class Ports(NamedTuple):
     time_functions: list[TimeFunction]
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     jumps: list[list[float]]        # times at which accelerations jump with the port
+    forced: list[bool]              # ports of loads, which are no motions
 
 
 def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
     """Power ports of a model; `at` is the first coordinate of each DOF block, by id."""
-    ports = Ports({}, [], [], [], [])
+    ports = Ports({}, [], [], [], [], [])
 
-    def add(name: str, time_function: TimeFunction | None, jumps: list[float]) -> int:
+    def add(name: str, time_function: TimeFunction | None, jumps: list[float],
+            forced: bool = False) -> int:
         ports.names.append(name)
         ports.time_functions.append(time_function or TimeFunction())
         ports.jumps.append(jumps)
+        ports.forced.append(forced)
         return len(ports.names) - 1
 
     for element in (*model.constraints, *model.loads):
         if element_kernel(element.kind).POWER:
-            ports.of[element] = add(element.name, element.time_function, _jumps(element))
+            ports.of[element] = add(element.name, element.time_function, _jumps(element),
+                                    not element.multipliers)
     for body in model.bodies.values():
         if body.reduced.damping is not None:
             ports.of[body] = add(f"damping of {body.name}", None, [])

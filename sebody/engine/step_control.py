@@ -127,7 +127,8 @@ def set_end(system, state):
     A step that ends at a jump reads its loads before that.
     """
     clock, control, corners = state.clock, state.control, system.corners
-    end, near = clock.time + clock.current_step, NEAR * clock.current_step
+    end = clock.time + clock.current_step
+    near = NEAR * min(clock.current_step, clock.step)   # of long steps corners would be passed over
     clock.end, clock.beside, control.meets = end, 0.0, NOTHING
     k = control.corner
     while k < corners.size and corners[k] < end + near:

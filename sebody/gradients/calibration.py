@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 from warnings import WarningMessage, catch_warnings, simplefilter, warn
 
 import numpy as np
@@ -24,6 +25,7 @@ from sebody.gradients.slopes import Slopes
 from sebody.gradients.support import refuse_model
 from sebody.gradients.sweeps import forward
 from sebody.model.model import Model
+from sebody.model.variants.copying import copied
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
@@ -73,7 +75,7 @@ def calibrate(model: Model, h: float, measured: Mapping[str, ArrayLike],
     """Fit numbers of a model to measured histories, by Gauss and Newton with exact derivatives.
 
     One run and one forward sweep with a column for each number give the residuals and their
-    derivatives; `scipy.optimize.least_squares` does the rest. The model is as before afterwards.
+    derivatives; `scipy.optimize.least_squares` does the rest. The model is copied.
 
     Parameters
     ----------
@@ -103,6 +105,7 @@ def calibrate(model: Model, h: float, measured: Mapping[str, ArrayLike],
     if deviations is not None and not isinstance(deviations, Mapping):
         raise inputs.refusal("deviations", deviations, "give a dict of quantities and numbers")
     data = _checked(measured, deviations or {})
+    model = cast(Model, copied(model))      # which is changed for moments
     refuse_model(model)
     point = Point(model, parameters)
     count = sum(one.values.size for one in data.values())

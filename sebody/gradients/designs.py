@@ -26,7 +26,7 @@ class Design:
     name : str
         Of the parameter, for columns.
     values : array_like
-        Its numbers in the model as built.
+        Its numbers, at which it is differentiated; they need not be those of the model as built.
     bodies : sequence of str
         Superelements that follow.
     make : function
@@ -94,7 +94,7 @@ def sections(model: Model, beam: str, values: ArrayLike,
     beam : str
         Name of a beam that was built by `Model.beam`.
     values : array_like
-        The numbers as built.
+        The numbers, at which they are differentiated.
     section : function
         Of an array of numbers like these: the section, or a function of the place along the beam.
     name : str, optional

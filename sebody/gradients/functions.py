@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ from sebody.gradients.objectives import checked
 from sebody.gradients.point import Point
 from sebody.gradients.support import refuse_model
 from sebody.model.model import Model
+from sebody.model.variants.copying import copied
 from sebody.runs.steps import whole_steps
 
 
@@ -28,7 +30,7 @@ class ValueAndGradient:
     Parameters
     ----------
     model : Model
-        Is put back after every run.
+        Is copied.
     h, t_end : float
         As of `gradient`.
     objectives : mapping
@@ -61,13 +63,14 @@ class ValueAndGradient:
     def __init__(self, model: Model, h: float, t_end: float,
                  objectives: dict[str, Output] | Output, parameters: Sequence[str],
                  mode: str = "adjoint", scheme: Scheme | None = None):
-        self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
+        inputs.instance(model, "model", Model, "give a sebody.Model")
+        self.model = cast(Model, copied(model))
         self.mode = inputs.choice(mode, "mode", MODES)
         self.h = inputs.number(h, "h", above=0)
         self.t_end = self.h * whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
         self.outputs = checked(objectives, self.t_end)
-        refuse_model(model)
-        self.point, self.scheme = Point(model, parameters), fitting(scheme)
+        refuse_model(self.model)
+        self.point, self.scheme = Point(self.model, parameters), fitting(scheme)
         self.base, self.labels = self.point.base, self.point.labels
         self.runs = 0
         self._last: tuple[NDArray, Gradient] | None = None

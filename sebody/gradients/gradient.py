@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 from warnings import warn
 
 import numpy as np
@@ -19,7 +19,7 @@ from sebody.gradients.history import History, history
 from sebody.gradients.laws import refuse_break_away
 from sebody.gradients.linear import Linear
 from sebody.gradients.objectives import Folded, Objectives, Seen, checked
-from sebody.gradients.parameters import Column, columns_of
+from sebody.gradients.parameters import Column, columns_at_values
 from sebody.gradients.segments import Segments
 from sebody.gradients.slopes import Slope, Slopes
 from sebody.gradients.stabilized_course import course_of
@@ -27,6 +27,7 @@ from sebody.gradients.support import refuse_model, refuse_run
 from sebody.gradients.sweeps import Adjoint, backward, forward
 from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
+from sebody.model.variants.copying import copied
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import Simulation
@@ -98,7 +99,7 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     Parameters
     ----------
     model : Model
-        As it was before, when this returns.
+        Is copied.
     h, t_end : float
         Fixed step, and end of the run, a multiple of it [time].
     objectives : mapping
@@ -135,7 +136,8 @@ def gradient(model: Model, h: float, t_end: float, objectives: Objectives,
     t_end = h * whole_steps(inputs.number(t_end, "t_end", above=0), h)
     outputs = checked(objectives, t_end)
     inputs.instance(model, "model", Model, "give a sebody.Model")
-    columns = columns_of(model, parameters)
+    model = cast(Model, copied(model))      # which is changed for moments
+    columns = columns_at_values(model, parameters)
     refuse_model(model)
     return differentiate(model, h, t_end, outputs, columns, mode,
                          fitting(scheme, given(tolerance)), tolerance)
@@ -197,7 +199,7 @@ class _Part:
         for name, (column, port) in ports.items():
             if port is not None and one.whole.kinematic:    # objectives look at motion alone
                 self.tables[name] = OfTable([
-                    Part(residuals, weights(one.model, column, history, *value))
+                    Part(residuals, weights(one.model, column, run.grid, history, *value))
                     for residuals, *value in self.slopes.by_load(port)])
 
     def slope(self, column: Column) -> Slope:

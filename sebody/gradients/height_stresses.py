@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,7 @@ from sebody.gradients.held_beams import Elements, Held, HeldBeam
 from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement
+from sebody.model.variants.copying import copied
 from sebody.runs.steps import whole_steps
 
 OVERSTEPPED = 1e-3  # of the range of heights: how far beyond a bound a search may go
@@ -71,7 +72,8 @@ class BeamStress:
     def __init__(self, model: Model, h: float, t_end: float, beam: str, heights: ArrayLike,
                  section: Callable[[float], Section | StiffnessSection],
                  bounds: tuple[float, float], scheme: Scheme | None = None):
-        self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
+        inputs.instance(model, "model", Model, "give a sebody.Model")
+        model = self.model = cast(Model, copied(model))     # which has other heights for moments
         self.h = inputs.number(h, "h", above=0)
         self.t_end = self.h * whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
         one = _beam(model, beam)

@@ -129,6 +129,7 @@ def gradients(model: Model, h: float, t_end: float, objectives: Objectives,
     t_end = h * whole_steps(inputs.number(t_end, "t_end", above=0), h)
     outputs = checked(objectives, t_end)
     inputs.instance(model, "model", Model, "give a sebody.Model")
+    model = cast(Model, copied(model))
     threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
     found, runs = given(model, values)
     for name, handle in found.items():

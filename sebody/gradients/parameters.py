@@ -47,6 +47,18 @@ def columns_of(model: Model, names: Sequence[Parameter]) -> list[Column]:
     return list(found.values())
 
 
+def columns_at_values(model: Model, names: Sequence[Parameter]) -> list[Column]:
+    """The same as `columns_of`, in a model that takes the values of designs.
+
+    Designs give their values themselves, which need not be those the model was built with.
+    """
+    found = columns_of(model, names)
+    designs = {c.name: c.handle for c in found if c.design}
+    for of in designs.values():
+        of.set(of.base)
+    return columns_of(model, names) if designs else found
+
+
 def _columns(model: Model, given: Parameter) -> list[Column]:
     if isinstance(given, Design):
         of = given.handle(model)

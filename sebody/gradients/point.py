@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import Handle
+from sebody.explore.ensembles.handles import refuse_values
 from sebody.gradients.parameters import Column, Parameter, columns_of
 from sebody.model.model import Model
 
@@ -34,7 +35,7 @@ class Point:
     """
 
     def __init__(self, model: Model, names: Sequence[Parameter]):
-        self.columns = columns_of(model, names)
+        self.model, self.columns = model, columns_of(model, names)
         self.base = np.array([c.handle.base.reshape(-1)[c.component] for c in self.columns],
                              dtype=float)
         self._handles = {c.name: c.handle for c in self.columns}
@@ -50,6 +51,7 @@ class Point:
         values = self._values(x)
         try:
             self._apply(values)
+            refuse_values(self.model, values)
             yield [column._replace(handle=self._about(column, values)) for column in self.columns]
         finally:
             self._reset()

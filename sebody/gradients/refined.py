@@ -43,9 +43,10 @@ class Refined:
         self.linear, self.products, self.history = linear, products, history
         self.scheme = scheme
         self.back, self.redundant, n = back, redundant, linear.free
-        self.columns = Columns.of(
-            columns, n, products.kept.shape[1], places,
-            scheme.tolerance if scheme.tolerance > FINE else ROUNDING)
+        # weights of the states of laws are small beside others, and their errors grow
+        roughly = scheme.tolerance > FINE and products.address.all()
+        self.columns = Columns.of(columns, n, products.kept.shape[1], places,
+                                  scheme.tolerance if roughly else ROUNDING)
         self.numbers = (scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma,
                         history.duration)
         self.scales: dict[float, Scales] = {}

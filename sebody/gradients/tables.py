@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from sebody.assembly.close_rows import Grid, means, stretches
 from sebody.gradients.history import History
 from sebody.gradients.parameters import Column
 from sebody.gradients.slopes import Slope
@@ -63,8 +64,8 @@ def _load(model: Model, column: Column) -> Element | None:
         (one for one in model.loads if one.name == owner), None)
 
 
-def weights(model: Model, column: Column, history: History, values: NDArray, times: NDArray
-            ) -> sparse.csr_array:
+def weights(model: Model, column: Column, grid: Grid | None, history: History, values: NDArray,
+            times: NDArray) -> sparse.csr_array:
     """Weights of a parameter's numbers in the value of its load at all events, (events, numbers).
 
     `values` are those of the load at some times, (events,), before or after jumps as of the events.
@@ -75,11 +76,29 @@ def weights(model: Model, column: Column, history: History, values: NDArray, tim
     assert load is not None and load.time_function is not None
     rows = rows_of(load.time_function.times, load.time_function.pieces)
     assert rows is not None
-    t, last, events = rows[:, 0], len(rows) - 1, np.arange(len(times))
-    first = np.searchsorted(t, times + history.besides, side="right") - 1
+    t, seen = rows[:, 0], times + history.besides
+    found = None if grid is None else stretches(load.time_function, grid)
+    if found is None:
+        return _interpolation(t, seen, times - seen)
+    k = np.maximum(np.searchsorted(found.begins, seen, side="right") - 1, 0)
+    held = (found.begins[k] <= seen) & (seen < found.times[k, 0])
+    of_level = (found.times[k, 0] <= seen) & (seen < found.times[k, 2])
+    of_table = _interpolation(t, np.where(held, found.begins[k], seen),
+                              np.where(held, 0.0, times - seen))
+    given = means(load.time_function, found)
+    levels = (given.weights @ _interpolation(t, given.times, given.later)).tocsr()
+    place = 2 * k + (seen >= found.times[k, 1])
+    return sparse.csr_array(sparse.diags_array((~of_level).astype(float)) @ of_table
+                            + sparse.diags_array(of_level.astype(float)) @ levels[place])
+
+
+def _interpolation(t: NDArray, times: NDArray, later: NDArray) -> sparse.csr_array:
+    """Weights of rows at some times in the values of pieces of these times, read a little later."""
+    last, every = len(t) - 1, np.arange(len(times))
+    first = np.searchsorted(t, times, side="right") - 1
     inside = (first >= 0) & (first < last)
-    others, e, k = events[~inside], events[inside], first[inside]
-    part = (times[e] - t[k]) / (t[k + 1] - t[k])
+    others, e, k = every[~inside], every[inside], first[inside]
+    part = (times[e] - t[k] + later[e]) / (t[k + 1] - t[k])
     return sparse.csr_array((np.concatenate([np.ones(len(others)), 1.0 - part, part]), (
         np.concatenate([others, e, e]),
-        np.concatenate([np.maximum(first[~inside], 0), k, k + 1]))), shape=(len(events), len(rows)))
+        np.concatenate([np.maximum(first[~inside], 0), k, k + 1]))), shape=(len(times), len(t)))

@@ -62,18 +62,31 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
         raise InputError(f"{what}: it has no limit: give lower=, upper= or both")
     low = -np.inf if lower is None else inputs.number(lower, f"{what}: lower")
     high = np.inf if upper is None else inputs.number(upper, f"{what}: upper")
-    if low >= high:
-        raise InputError(f"{what}: lower is {low:g} and upper {high:g}, which leaves no room: "
-                         "give a lower limit below the upper one")
-    if not low <= start <= high:
-        raise InputError(f"{what}: it starts at {start:g}, beyond the limits {low:g} and "
-                         f"{high:g}: a start inside the stop would be an impact of unknown speed")
+    checked_limits(what, low, high, start)
     constants = impact_constants(what, restitution, at_speed, stiffness, exponent)
     name = chosen_name(model, name, what.replace("'", ""))
     made = Element(name, model.kind_of(kind), attachments,
                    constants | own | {"lower": low, "upper": high})
     model.loads.append(made)
     return made
+
+
+def checked_limits(what: str, low: float, high: float, start: float, play: bool = False) -> None:
+    """Refuse limits that leave no room, unless it is `play`, or a start beyond them."""
+    if low > high or (low == high and not play):
+        raise InputError(f"{what}: lower is {low:g} and upper {high:g}, which leaves no room: "
+                         "give a lower limit below the upper one")
+    if not low <= start <= high:
+        raise InputError(f"{what}: it starts at {start:g}, beyond the limits {low:g} and "
+                         f"{high:g}: a start inside the stop would be an impact of unknown speed")
+
+
+def refuse_deep(model: Mechanism, what: str, surface: str, radius: float, gap: float) -> None:
+    """Refuse a start deep in a surface, of a sphere about a point that is so far from it."""
+    depth = radius - gap
+    if depth > DEEP * (radius if radius > 0 else model.size()):
+        raise InputError(f"{what}: it starts {depth:g} deep in the {surface}: start it outside, or "
+                         "turn the normal (inside=True for a bore)")
 
 
 def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0,
@@ -121,10 +134,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     r = inputs.number(radius, f"{what}: radius", least=0)
     b = _carrier(model, on, a, what)
     shape, gap = _shape(model, on, a, b, what)
-    depth = r - gap
-    if depth > DEEP * (r if r > 0 else model.size()):
-        raise InputError(f"{what}: it starts {depth:g} deep in the {on.kind}: start it outside, or "
-                         "turn the normal (inside=True for a bore)")
+    refuse_deep(model, what, on.kind, r, gap)
     dof_block(a, "position")
     attachments = positions(a, b) + (rotations(a, b) if r > 0 else rotations(b))
     if r > 0 and a.rotation is None:
@@ -155,9 +165,7 @@ def _inside(model: Mechanism, point: BodyPoint, called: str, on: Surface, radius
     a = Node(called, start_place(point), None, None)
     b = _carrier(model, on, a, what)
     shape, gap = _shape(model, on, a, b, what)
-    if -gap > DEEP * model.size():
-        raise InputError(f"{what}: it starts {-gap:g} deep in the {on.kind}: start it outside, or "
-                         "turn the normal (inside=True for a bore)")
+    refuse_deep(model, what, on.kind, 0.0, gap)
     own = {"e": shape.get("n", shape.get("e", np.zeros(model.dimension))),
            "level": shape.get("level", 0.0), "flat": float(on.kind == "plane"),
            "size": shape.get("size", 1.0), "side": shape.get("side", 1.0), "radius": 0.0}

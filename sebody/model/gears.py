@@ -46,9 +46,7 @@ def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float
             raise InputError(f"{what}: {one.name!r} is a {one.kind}: give revolute joints")
     if joints[0] is joints[1]:
         raise InputError(f"{what}: give two joints")
-    ratio = inputs.number(ratio, f"{what}: ratio")
-    if ratio == 0:
-        raise InputError(f"{what}: ratio is 0: give the turns of the first for one of the second")
+    ratio = checked_ratio(what, ratio)
     play = inputs.number(backlash, f"{what}: backlash", least=0)
     tuned = {} if stiffness is not None else {"teeth": 1.0}
     constants = impact_constants(what, restitution, at_speed, 1.0 if tuned else stiffness, exponent)
@@ -61,3 +59,17 @@ def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float
     made = Element(name, model.kind_of("gear_play"), attachments, constants | own, tuned=tuned)
     model.loads.append(made)
     return made
+
+
+def checked_ratio(what: str, ratio: float) -> float:
+    """The ratio of a pair of gears.
+
+    Raises
+    ------
+    InputError
+        Zero, or no number.
+    """
+    ratio = inputs.number(ratio, f"{what}: ratio")
+    if ratio == 0:
+        raise InputError(f"{what}: ratio is 0: give the turns of the first for one of the second")
+    return ratio

@@ -50,6 +50,18 @@ def restitution_of(damping: float, at_speed: float) -> float:
     return -np.expm1(-brentq(lambda z: z + np.expm1(-z) - loss, 0.0, loss + 1.0, xtol=1e-15)) / y
 
 
+def checked_law(what: str, stiffness: float, exponent: float) -> dict[str, float]:
+    """Stiffness and exponent of the law of a contact.
+
+    Raises
+    ------
+    InputError
+        Numbers out of range.
+    """
+    return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
+            "exponent": inputs.number(exponent, f"{what}: exponent", least=1)}
+
+
 def impact_constants(what: str, restitution: float, at_speed: float, stiffness: float | None,
                      exponent: float) -> dict[str, float | NDArray]:
     """Constants of the law of a contact, a stop or teeth.
@@ -61,6 +73,5 @@ def impact_constants(what: str, restitution: float, at_speed: float, stiffness: 
     """
     if stiffness is None:
         raise InputError(f"{what}: give stiffness=, the force at a depth of one")
-    return {"stiffness": inputs.number(stiffness, f"{what}: stiffness", above=0),
-            "exponent": inputs.number(exponent, f"{what}: exponent", least=1),
+    return {**checked_law(what, stiffness, exponent),
             "damping": damping_of(restitution, at_speed, what), "slow": SLOW * at_speed}

@@ -8,7 +8,7 @@ simulation starts; later on its speed must not jump.
 
 from __future__ import annotations
 
-from math import comb, copysign, inf, sqrt
+from math import copysign, inf, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from sebody.basics.errors import InputError
 from sebody.basics.inputs import array, items, number, shown
 from sebody.model.histories import of_cubics, spline_of
-from sebody.model.time_functions import COEFFICIENTS, TimeFunction, same_waves
+from sebody.model.time_functions import TimeFunction, same_waves
 
 SHORTEST = 1e-9     # time at constant speed, relative to that of the rise, which is left out
 
@@ -191,14 +191,10 @@ def _between(profile: TimeFunction, first: float, last: float) -> TimeFunction:
         return TimeFunction(sum((p.times for p in parts), ()), sum((p.pieces for p in parts), ()),
                        same_waves(parts))
     k = int(np.searchsorted(profile.times, first, side="right")) - 1
-    x = first - profile.times[k]
-    c = [*profile.pieces[k], *[0.0] * (COEFFICIENTS - len(profile.pieces[k]))]
-    moved = tuple(sum(comb(j, i) * c[j] * x**(j - i) for j in range(i, COEFFICIENTS))
-                  for i in range(COEFFICIENTS))
+    moved, wave = profile.moved(first)
     end = int(np.searchsorted(profile.times, last, side="left"))
     waves: tuple[tuple[float, float, float], ...] = ()
     if profile.waves:
-        A, w, p = profile.waves[k]
-        waves = ((A, w, p + w * x), *profile.waves[k + 1:end])
+        waves = (wave, *profile.waves[k + 1:end])
     return TimeFunction((first, *profile.times[k + 1:end]), (moved, *profile.pieces[k + 1:end]),
                         waves)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import cos, sin
+from math import comb, cos, sin
 
 import numpy as np
 from numba import njit
@@ -75,12 +75,17 @@ class TimeFunction:
             return np.full(len(times), self.pieces[0][0])
         if self.functions:
             return np.array([self.functions[0].ctypes(t) for t in times])
+        return self.after(times, np.zeros((len(times), 1)))[:, 0]
+
+    def after(self, times: NDArray, later: NDArray) -> NDArray:
+        """Values of the pieces of some times, (n,), at later ones, (n, k); of no function."""
         starts = np.array(self.times)
         row = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
-        x = np.maximum(times - starts[row], 0.0)
-        totals = (self.polynomials()[row] * x[:, None]**np.arange(COEFFICIENTS)).sum(axis=1)
+        x = np.maximum((times - starts[row])[:, None] + later, 0.0)
+        totals = (self.polynomials()[row][:, None] * x[..., None]**np.arange(COEFFICIENTS)
+                  ).sum(axis=-1)
         if self.waves:
-            A, w, p = np.array(self.waves)[row].T
+            A, w, p = np.array(self.waves)[row].T[..., None]
             totals += A * np.sin(w * x + p)
         return totals
 
@@ -103,6 +108,15 @@ class TimeFunction:
             s, c = sin(w * x + p), cos(w * x + p)
             values += A * np.array([s, w * c, -w * w * s])
         return values
+
+    def moved(self, t: float) -> tuple[tuple[float, ...], tuple[float, float, float]]:
+        """Coefficients and harmonic of the piece at a time, counted from this time on."""
+        k = int(np.searchsorted(self.times, t, side="right")) - 1
+        x = t - self.times[k]
+        c = [*self.pieces[k], *[0.0] * (COEFFICIENTS - len(self.pieces[k]))]
+        A, w, p = self.waves[k] if self.waves else (0.0, 0.0, 0.0)
+        return tuple(sum(comb(j, i) * c[j] * x**(j - i) for j in range(i, COEFFICIENTS))
+                     for i in range(COEFFICIENTS)), (A, w, p + w * x)
 
     def described(self) -> str:
         """What it is, in a few words."""

@@ -1,13 +1,19 @@
 """What a model is, as a hash: to see whether a saved run is of another one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
 from hashlib import sha256
 
 import numpy as np
 
+from sebody.basics.version import __version__
 from sebody.model.outside import CONSTANTS, values_read
 from sebody.runs.simulation import Simulation
 from sebody.runs.user_faults import functions
+
+# arrays of `System.control` that hold no addresses
+PLACED = ("tasks", "periods", "offsets", "channels", "coefficients", "sensors", "errors", "seeds",
+          "wires", "ends", "inputs", "limits", "parameters")
 
 
 def fingerprint(run: Simulation) -> str:
@@ -22,6 +28,39 @@ def fingerprint(run: Simulation) -> str:
             system.corners, system.prescribed, system.prescribed_factor, model.gravity_field,
             run.state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
+
+
+def whole(run: Simulation) -> str:
+    """Hash of all that results of a run follow from: also of its start, scheme and laws.
+
+    Bodies count with what stresses are recovered from.
+    """
+    parts = [fingerprint(run), repr((__version__, run.h, run.every, tuple(run.scheme)))]
+    hashed = sha256("".join(parts).encode())
+    control = [getattr(run.system.control, name) for name in PLACED]
+    for array in control:
+        hashed.update(array.tobytes())
+    for block in run.model.dof_blocks():
+        hashed.update(block.rate.tobytes() + repr((block.name, block.given)).encode())
+    for name, body in run.model.bodies.items():
+        hashed.update(name.encode())
+        hashed.update(_bytes(body.reduced))
+    return hashed.hexdigest()
+
+
+def _bytes(value: object) -> bytes:
+    """A value that may hold arrays and other dataclasses, written the same in every process."""
+    if isinstance(value, np.ndarray):
+        return repr((str(value.dtype), value.shape)).encode() + value.tobytes()
+    if is_dataclass(value):
+        return type(value).__name__.encode() + b"".join(
+            field.name.encode() + _bytes(getattr(value, field.name))
+            for field in fields(value) if not field.name.startswith("_"))
+    if isinstance(value, Mapping):
+        return b"".join(_bytes(key) + _bytes(one) for key, one in value.items())
+    if isinstance(value, list | tuple):
+        return b"".join(map(_bytes, value))
+    return repr(value).encode() if isinstance(value, CONSTANTS) else type(value).__name__.encode()
 
 
 def described(function: Callable) -> list[tuple[str, object]]:

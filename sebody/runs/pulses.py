@@ -5,9 +5,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.close_rows import Grid, close_corners, stretches
 from sebody.assembly.numbering import Numbering
 from sebody.model.time_functions import TimeFunction
 
+MANY, SHARE = 20, 0.1   # steps, and share of all steps, that close rows may divide unsaid
 MISSED = 0.2            # share of the largest value by which a peak may exceed what steps see
 ON_GRID = 1e-6          # of a step: nearer times are those of the step
 SAMPLES = 200           # times at which a function is looked at for jumps
@@ -29,7 +31,7 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
         Of the run [time].
     """
     for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
-        times = _known(time_function)
+        times = _known(time_function, h)
         times = times[(times > begin) & (times < end)]
         if not times.size:
             continue
@@ -45,6 +47,32 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
             yield name, (f"{name} is {values[k]:.4g} at t = {times[k]:.6g}, between two steps of "
                          f"{h:g}, at which it is {seen[0, k]:.4g} and {seen[1, k]:.4g}: choose "
                          "steps that meet or resolve the peak, or variable steps with a tolerance")
+
+
+def divided(numbering: Numbering, h: float, begin: float, end: float
+            ) -> Iterator[tuple[str, str]]:
+    """Loads whose close rows divide many fixed steps, and a warning for each.
+
+    Parameters
+    ----------
+    h : float
+        Step [time].
+    begin, end : float
+        Of the run [time].
+    """
+    for port in np.flatnonzero(numbering.forced):
+        time_function = numbering.time_functions[port]
+        if time_function.functions or time_function.is_time:
+            continue
+        found = stretches(time_function, Grid(h, fixed=True))
+        count = 0 if found is None else int(((found.times[:, 2] > begin)
+                                             & (found.begins < end)).sum())
+        if count > max(MANY, SHARE * (end - begin) / h):
+            name = numbering.port_names[port]
+            yield name, (f"rows of the table of {name} are closer than the step of {h:g} in "
+                         f"{count} steps: so that nothing of it is lost, each of them is divided "
+                         "into as many as four, which takes longer; take steps as long as rows "
+                         "are apart, or a table with rows as far apart as the steps")
 
 
 def untold(numbering: Numbering, h: float, begin: float, end: float) -> Iterator[tuple[str, str]]:
@@ -90,9 +118,9 @@ def _jump(function: Callable[[float], float],
     return None
 
 
-def _known(time_function: TimeFunction) -> NDArray:
-    """Times at which a time function may have a peak."""
+def _known(time_function: TimeFunction, h: float) -> NDArray:
+    """Times at which a time function may have a peak that steps miss: none of close rows."""
     if not time_function.functions:
-        return np.array(time_function.times)
+        return np.setdiff1d(time_function.times, close_corners(time_function, Grid(h, fixed=True)))
     corners = np.array(time_function.corners)
     return np.concatenate([corners, (corners[1:] + corners[:-1]) / 2])

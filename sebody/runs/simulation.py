@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.engine.loop import advance
@@ -29,7 +30,7 @@ from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
 from sebody.runs.progress import showing
-from sebody.runs.pulses import unseen, untold
+from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
@@ -86,6 +87,8 @@ class Simulation:
         violates them, or variable steps with constraints of index 3.
     """
 
+    gives_loads_to_steps = True     # see `sebody.assembly.close_rows`
+
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None,
                  start: Result | None = None, threads: int = 1):
@@ -99,7 +102,8 @@ class Simulation:
         threads = checked_threads(threads)
         user_faults.refuse_changed(model)
         prepare([model])
-        self.system, self.numbering = build(model, threads)
+        self.grid = Grid(self.h, tolerance is None) if self.gives_loads_to_steps else None
+        self.system, self.numbering = build(model, threads, self.grid)
         self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
@@ -183,6 +187,8 @@ class Simulation:
         if self.state.control.adaptive == 0:
             for name, message in unseen(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"peak {name}", message)
+            for name, message in divided(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"rows {name}", message)
             for name, message in untold(self.numbering, self.h, self.time, t_end):
                 self.watch.say(f"jump {name}", message)
         record = self.rows.record_until(last)
@@ -317,6 +323,12 @@ class Simulation:
                              "joints at t = 0")
         state.control.matrices = 0
         state.aux_old[:] = state.aux
+
+
+class Standstill(Simulation):
+    """The start of a model that no steps follow: its loads are as they were given at any time."""
+
+    gives_loads_to_steps = False
 
 
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,

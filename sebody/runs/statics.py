@@ -17,7 +17,7 @@ from sebody.runs import user_faults
 from sebody.runs.folding import Tensions
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import balance, pace, settle
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Simulation, Standstill
 from sebody.runs.tuning import unbend
 
 STICKING = 1e-7             # of extents: by which the loads move what sticks, no more
@@ -101,7 +101,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
 
 def _at_rest(model: Model, t: float) -> Simulation:
     """The model as built, with all of the loads of a time and without rates."""
-    run = _still(Simulation(model, 1.0), t)
+    run = _still(Standstill(model, 1.0), t)
     if not any(load.tuned for load in model.loads):
         # what nothing presses does not stick
         run.state.q[run.system.is_multiplier[:run.state.q.size] > 0] = 0.0
@@ -112,7 +112,7 @@ def _at_rest(model: Model, t: float) -> Simulation:
     run.state.loads[:], run.state.coefficients[FIELD:] = 0.0, 0.0       # but springs pull
     squares.append(pace(run, still))
     square = max(squares)
-    return _still(Simulation(model, np.sqrt(STICKING / square) if 0.0 < square < np.inf else 1.0),
+    return _still(Standstill(model, np.sqrt(STICKING / square) if 0.0 < square < np.inf else 1.0),
                   t)
 
 

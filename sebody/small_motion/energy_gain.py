@@ -27,7 +27,7 @@ from sebody.basics.errors import InputError
 from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.model.model import Model
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Simulation, Standstill
 from sebody.small_motion.linearization import vibrations
 
 SAMPLES = 400           # of the loads, besides their corners
@@ -81,7 +81,7 @@ def energy_gain(model: Model, until: float) -> EnergyGain:
     """
     inputs.instance(model, "model", Model, "give a sebody.Model")
     until = inputs.number(until, "until", above=0)
-    run = Simulation(model, until)
+    run = Standstill(model, until)
     state, n = run.state, run.numbering.free
     velocity = state.v.copy()
     state.v[:] = state.a[:] = 0.0

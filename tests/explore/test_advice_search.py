@@ -1,6 +1,7 @@
 """The search of advice: what it looks at, what it leaves out, and how it ends."""
 
 import math
+import types
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from sebody import Model, SimulationError, simulate
 from sebody.analysis import advise, modes
 from sebody.explore.advice import Unreached
+from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.cost import operations
 from sebody.explore.advice.estimates import UNSURE
 from sebody.explore.advice.forms import parts_of
@@ -15,6 +17,8 @@ from sebody.explore.advice.indicators.activity import activity
 from sebody.explore.advice.measures import Measure
 from sebody.explore.advice.quantities import Values
 from sebody.explore.advice.reference import reference
+from sebody.explore.advice.runner import Tried
+from sebody.explore.advice.search import Search
 from sebody.fem import Section, planar_beam
 from sebody.kernels.loader import load
 from sebody.reduction import craig_bampton
@@ -230,3 +234,52 @@ def test_a_struck_body_is_quiet_but_for_a_short_time():
     quiet, busy = (activity(simulate(body(history), 0.002, T_END)) for history in (struck, always))
     assert quiet < 0.25
     assert busy > 0.9
+
+
+class Timed:
+    """A laboratory whose runs take as long and are as exact as they are said to be."""
+
+    parts, tolerance, bases = [], 1e-2, {H / 8: None}
+
+    def __init__(self, rows):
+        """Rows of step, error, error with half the step, and seconds of the first and others."""
+        self.rows = {step: own for step, *own in rows}
+        self.remarks, self.ran = [], []
+        self.tried = [Tried(Choice((), Step(step)), error, error, first)
+                      for step, error, _, first, _ in rows]
+
+    def run(self, choice):
+        self.ran.append(choice.step.h)
+        return types.SimpleNamespace(seconds=self.rows[choice.step.h][3])
+
+    def attempt(self, choice, kind):
+        half = self.rows[2 * choice.step.h][1]
+        return Tried(choice, half, half, 1.0), None
+
+    def spent(self):
+        return 0.0
+
+
+@pytest.mark.parametrize("rows, chosen, said", [
+    # the second one is quicker and more exact
+    ([(0.01, 6e-3, 2e-3, 1.46e-3, 1.46e-3), (0.03, 2e-3, 5e-4, 1.3e-3, 1.3e-3)], 0.03, ""),
+    ([(0.01, 6e-3, 2e-3, 1.46e-3, 1.46e-3), (0.03, 9e-3, 5e-4, 1.0e-3, 1.0e-3)], 0.03, ""),
+    ([(0.01, 6e-3, 2e-3, 1.46e-3, 1.46e-3), (0.03, 2e-3, 5e-2, 1.3e-3, 1.3e-3)], 0.01,
+     "with half its step its error is above the tolerance"),
+    # by chance: repeated, the first one is as quick
+    ([(0.01, 6e-3, 2e-3, 1.46e-3, 1.3e-3), (0.03, 2e-3, 5e-4, 1.29e-3, 1.29e-3)], 0.01,
+     "not clearly less than 1.3 ms"),
+    ([(0.01, 6e-3, 2e-3, 1.46e-3, 1.4e-3), (0.03, 2e-2, 5e-4, 1.0e-3, 1.0e-3)], 0.01, "")])
+def test_the_best_run_of_the_table_is_chosen(rows, chosen, said):
+    lab = Timed(rows)
+    search = Search(lab, budget=10.0)
+    assert search.better(lab.tried[0]).choice.step.h == chosen
+    assert [said in one for one in lab.remarks] == [True] * bool(said)
+
+
+def test_a_quicker_row_that_is_not_chosen_is_remarked(advice):
+    """As the table and the summary have them; a row that was repeated may be the chosen one."""
+    for row in advice.table:
+        if row.error <= advice.tolerance and row.seconds < advice.seconds and row.kind in (
+                "alone", "together", "confirmation", "given"):
+            assert row is advice.trial or f"{row.change}, step {row.step:.4g}" in advice.summary()

@@ -196,6 +196,47 @@ def test_no_cluster_is_said(monkeypatch):
         sweep(build, OUTPUTS, {"length": [1.0]}, cluster="tcp://127.0.0.1:9")
 
 
+EDITS = [("stiffness=80.0", "stiffness=81.0"), ("t_end=0.2", "t_end=0.3"), ("h=0.01", "h=0.02"),
+         ("0.3 + length, 0.5", "0.3 + length, 0.6"), ("mass, 0.3", "mass, 0.31"),
+         ('model.gravity(', 'model.initial_velocity("tip", (0.1, 0.0))\n    model.gravity(')]
+
+
+@pytest.mark.parametrize("edit", EDITS, ids=[new[:20] for _, new in EDITS])
+def test_the_table_of_an_edited_scene_is_that_of_another_sweep(tmp_path, capsys, edit):
+    """The same command after an edit of the file: refused; after none it goes on."""
+    scene, table = tmp_path / "pendulum.py", tmp_path / "table"
+    scene.write_text(PENDULUM)
+    command = ["sweep", str(scene), "--vary", "spring.stiffness=70,80", "--output", str(table)]
+    assert main(command) == 0
+    assert main(command) == 0
+    scene.write_text(PENDULUM.replace(*edit))
+    assert main(command) == 2
+    assert "is the table of another sweep, with other scenes, models" in capsys.readouterr().err
+
+
+def test_an_edit_that_only_other_values_see_is_found(tmp_path):
+    """The first structure is as before, the second one is not."""
+    def changed(length: float = 1.0, mass: float = 2.0):
+        scene = build(length, mass)
+        if length > 1.5:
+            scene.model.force("tip", (1.0, 0.0))
+        return scene
+    changed.__module__, changed.__qualname__ = build.__module__, build.__qualname__
+    values = {"length": [1.0, 2.0]}
+    sweep(build, OUTPUTS, values, output=tmp_path / "table.npz")
+    with pytest.raises(InputError, match="is the table of another sweep"):
+        sweep(changed, OUTPUTS, values, output=tmp_path / "table.npz")
+
+
+def test_a_body_and_a_version_make_another_sweep(tmp_path, monkeypatch):
+    """Bodies by all they hold, also what stresses are recovered from."""
+    from sebody.runs import fingerprint
+    sweep(build, OUTPUTS, {"spring.stiffness": [70.0]}, output=tmp_path / "table.npz")
+    monkeypatch.setattr(fingerprint, "__version__", "0.0.1")
+    with pytest.raises(InputError, match="or of another version of sebody"):
+        sweep(build, OUTPUTS, {"spring.stiffness": [70.0]}, output=tmp_path / "table.npz")
+
+
 KILLED = '''
 import json, os, signal, sys
 sys.path.insert(0, sys.argv[1])

@@ -97,6 +97,22 @@ def test_variable_steps_are_the_same_bit_for_bit(tmp_path):
     assert (folder / "rows").read_bytes() == run.result().rows[1:].tobytes()
 
 
+def test_loads_with_close_rows_are_the_same_bit_for_bit(tmp_path):
+    """Their impulse is that of the table."""
+    model = Model(planar=True)
+    model.node("hub", (0.3, -0.2))
+    model.rigid_body("wheel", "hub", 1.0, 2.0)
+    model.revolute("hub", name="pin")
+    model.torque("hub", 1.0, [(0, 1.0), (0.5, 1.0), (0.500001, -1.0), (1.0, -1.0), (1.000001, 0)])
+    folder = export(model, 0.01, library=tmp_path / "wheel", name="wheel", outputs=["pin.rate"],
+                    processor="native")
+    compiled_example(folder, "wheel")
+    called(folder, STEPS, tmp_path / "rows")
+    result = simulate(model, 0.01, STEPS * 0.01)
+    assert result["pin.rate"][-1] == pytest.approx(2.5e-7, abs=1e-12)
+    assert (tmp_path / "rows").read_bytes() == result.rows[1:].tobytes()
+
+
 def test_continuous_laws_are_called_without_addresses_of_this_process(tmp_path):
     folder = export(with_law(), H, library=tmp_path / "law", name="law", outputs=["law.states"],
                     processor="native")

@@ -187,11 +187,11 @@ def pulse(t):
 
 
 def test_a_pulse_between_steps_is_said():
-    """A triangle that lasts a third of a step, by a table and by a function with corners."""
-    rows = [(0.0, 0.0), (0.21, 0.0), (0.22, 5.0), (0.24, 0.0)]
-    for force, value, at in ((load(rows), "5", "0.22"),
-                             (load([(t, -value) for t, value in rows]), "-5", "0.22"),
-                             (load(with_corners(pulse, [0.21, 0.24])), "1", "0.225")):
+    """One of a function with corners; of a table with close rows no step misses anything."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", LimitWarning)
+        simulate(ball(load([(0.0, 0.0), (0.21, 0.0), (0.22, 5.0), (0.24, 0.0)])), 0.1, 0.5)
+    for force, value, at in ((load(with_corners(pulse, [0.21, 0.24])), "1", "0.225"),):
         with pytest.warns(LimitWarning, match=f"push is {value} at t = {at}, between two steps of "
                                               "0.1, at which it is -?0 and -?0: choose steps"):
             simulate(ball(force), 0.1, 0.5)

@@ -93,7 +93,8 @@ def advise(model: Model, h: float | None, t_end: float, quantities: str | Iterab
         include(lab)
         search = Search(lab, budget)
         try:
-            outcome, given = search.go(), lab.given()
+            found, given = search.go(), lab.given()
+            outcome = search.better(found)
         except KeyboardInterrupt:
             return conclusion(search, search.best(), interrupted=True)
     advice = conclusion(search, outcome, given)

@@ -56,3 +56,8 @@ def _size(part: Part, form: Form) -> str:
     bodies = f"{form.bodies} bod{'y' if form.bodies == 1 else 'ies'} with " if part.beam else ""
     each = " each" if form.bodies > 1 else ""
     return f"{bodies}{form.modes} mode{'s' * (form.modes != 1)}{each}"
+
+
+def in_units(seconds: float) -> str:
+    """A time in words."""
+    return f"{seconds:.3g} s" if seconds >= 1 else f"{1e3 * seconds:.3g} ms"

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.close_rows import Grid, close_corners
 from sebody.model.time_functions import TimeFunction
 
 SEEN = 0.01             # share of a load's strongest line that reference steps may miss
@@ -54,7 +55,8 @@ def _is_constant(time_function: TimeFunction) -> bool:
 def _share(time_function: TimeFunction, h: float, t_end: float) -> tuple[float, float]:
     """The share of a time function that steps miss, and the time where they miss most."""
     times, values = _sampled(time_function, h, t_end)
-    steps = np.arange(0.0, t_end + h, h)
+    steps = np.union1d(np.arange(0.0, t_end + h, h),
+                       close_corners(time_function, Grid(h, fixed=True)))    # steps end there, too
     off = values - np.interp(times, steps, time_function.values(steps))
     cells = np.linspace(0.0, t_end, min(MOST, int(DENSE * OFF_GRID * t_end / h) + 2))
     load, lost = (np.abs(np.fft.rfft(_means(times, one, cells))) for one in (values, off))

@@ -5,7 +5,7 @@ from time import process_time
 
 from sebody.basics.units import parsed_units
 from sebody.explore.advice.changes import Choice
-from sebody.explore.advice.labels import limiting
+from sebody.explore.advice.labels import in_units, limiting
 from sebody.explore.advice.limits import doubts
 from sebody.explore.advice.outcome import Advice
 from sebody.explore.advice.reasons import neighbours, reasons
@@ -14,9 +14,7 @@ from sebody.explore.advice.search import Search
 from sebody.results.units import unit_of_curves
 from sebody.runs.tolerance import Tolerance
 
-REPEATS = 2         # further runs of what is compared in time
 SAME = 0.02         # by which times of runs differ by chance
-QUICK = 0.2         # seconds of runs that are repeated: longer ones are not disturbed much
 
 
 def conclusion(search: Search, found: Tried, given: Tried | None = None,
@@ -30,7 +28,7 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
     """
     lab, choice = search.lab, found.choice
     made = lab.builder.make(choice)
-    seconds = found.seconds if interrupted else _quickest(search, found)
+    seconds = found.seconds if interrupted else search.timed(found)
     remarks = [] if given is None or interrupted else [
         *lab.remarks, *_saved(search, seconds, given), *neighbours(search, choice)]
     warnings = lab.warnings if interrupted else _warnings(search, found)
@@ -61,14 +59,6 @@ def _kept(search: Search, found: Tried) -> str:
             f"{limiting(search.lab.parts, largest)}")
 
 
-def _quickest(search: Search, found: Tried) -> float:
-    """Time of a run, the least of several where it is short."""
-    seconds = found.seconds
-    if seconds <= QUICK and not search.spent():
-        seconds = min([seconds, *(search.lab.run(found.choice).seconds for _ in range(REPEATS))])
-    return seconds
-
-
 def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
     """Those of the reference, and of the chosen model, which runs once more."""
     lab = search.lab
@@ -81,17 +71,17 @@ def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
     lab = search.lab
     detailed: Choice = lab.detailed
     whole = next(one for one in lab.tried if one.choice == detailed).seconds
-    told = (f"a run takes {_time(seconds)}, the reference model {_time(whole)}, "
-            f"{whole / seconds:.3g} times as long")
+    told = (f"a run takes {in_units(seconds)}, "
+            f"the reference model {in_units(whole)}, {whole / seconds:.3g} times as long")
     others = {"the reference model": whole}
     if given.error < float("inf"):
-        others["the given model"] = least = _quickest(search, given)
-        told += (f", the given one with its step {_time(least)}, {least / seconds:.3g} times, with "
-                 f"an error of {given.error:.2g}")
+        others["the given model"] = least = search.timed(given)
+        told += (f", the given one with its step {in_units(least)}, {least / seconds:.3g} times, "
+                 f"with an error of {given.error:.2g}")
         if given.error > lab.tolerance:
             del others["the given model"]       # it is no alternative
     spent = process_time() - lab.begun
-    return [told, f"the search took {_time(spent)}: {lab.count} runs, as much as "
+    return [told, f"the search took {in_units(spent)}: {lab.count} runs, as much as "
             f"{lab.spent():.2g} of the reference model, and making their models; "
             + _pays(spent, seconds, others)]
 
@@ -101,7 +91,3 @@ def _pays(spent: float, seconds: float, others: dict[str, float]) -> str:
     told = [f"{ceil(spent / (other - seconds))} runs instead of those of {name}"
             for name, other in others.items() if other > (1.0 + SAME) * seconds]
     return f"it pays after {', or '.join(told)}" if told else "it pays by what it confirms alone"
-
-
-def _time(seconds: float) -> str:
-    return f"{seconds:.3g} s" if seconds >= 1 else f"{1e3 * seconds:.3g} ms"

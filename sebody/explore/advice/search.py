@@ -12,6 +12,7 @@ from sebody.explore.advice.estimates import expected, least
 from sebody.explore.advice.first_runs import LONGER, MISSED
 from sebody.explore.advice.forms import Form, Part, alike
 from sebody.explore.advice.indicators.activity import activity
+from sebody.explore.advice.labels import in_brief, in_units
 from sebody.explore.advice.reference import ORDER_FACTOR
 from sebody.explore.advice.runner import FINER, Laboratory, Tried
 
@@ -22,6 +23,10 @@ SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
 RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
 LOCAL = 8.0                 # factor of local tolerances: half as many steps
+REPEATS = 2                 # further runs of what is compared in time
+QUICK = 0.2                 # seconds of runs that are repeated: longer ones vary less
+# share of a run's time by which another one is clearly quicker, or quicker and more exact
+QUICKER, SAME = 0.9, 0.95
 
 
 class Search:
@@ -42,6 +47,7 @@ class Search:
         self.exact: dict[str, float] = {}       # errors of what should change nothing
         self.groups = [[k] for k in range(len(lab.parts))]      # of parts that get like forms
         self._failed: list[Choice] = []
+        self._times: dict[int, float] = {}      # of what was tried
 
     def go(self) -> Tried:
         """The whole search."""
@@ -228,6 +234,44 @@ class Search:
         if not passing:
             return min(self.lab.tried, key=lambda one: one.error)
         return min(passing, key=lambda one: one.seconds)
+
+    def better(self, found: Tried) -> Tried:
+        """The best of all runs that were good enough, in place of the one that was found.
+
+        Choices are tried in the order of the cost that is predicted. Another run may be quicker, or
+        as quick and more exact; why it is not chosen is remarked.
+        """
+        if found.error > self.tolerance:
+            return found
+        for one in sorted((one for one in self.lab.tried if one.choice != found.choice
+                           and one.error <= self.tolerance), key=lambda one: one.seconds):
+            if one.seconds >= self.timed(found):
+                break
+            if not (self.timed(one) < QUICKER * self.timed(found) or (
+                    one.error < found.error and self.timed(one) < SAME * self.timed(found))):
+                self._say(one, f"as often as the one chosen a run takes {in_units(self.timed(one))}"
+                          f", not clearly less than {in_units(self.timed(found))}")
+            elif one.choice in self._failed or not self._confirmed(one):
+                self._say(one, "with half its step its error is above the tolerance")
+            else:
+                return one
+        return found
+
+    def _say(self, one: Tried, why: str) -> None:
+        local = one.choice.step.local
+        step = f"step {one.choice.step.h:.4g}" + f", local tolerance {local or 0:.2g}" * bool(local)
+        self.lab.remarks.append(
+            f"{in_brief(self.lab.parts, one.choice)}, {step}, was quicker with an error of "
+            f"{one.error:.2g}, and is not chosen: {why}")
+
+    def timed(self, found: Tried) -> float:
+        """Time of a run, the least of several where it is short."""
+        if id(found) not in self._times:
+            seconds = [found.seconds]
+            if found.seconds <= QUICK and not self.spent():
+                seconds += [self.lab.run(found.choice).seconds for _ in range(REPEATS)]
+            self._times[id(found)] = min(seconds)
+        return self._times[id(found)]
 
     def next(self, tolerance: float, sure: bool = False) -> Choice | None:
         """The cheapest choice that may be within a tolerance, or that should be."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +15,7 @@ from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
-from sebody.explore.ensembles.handles import given, handles
+from sebody.explore.ensembles.handles import given, handles, refused
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output, outputs_of
@@ -22,8 +23,10 @@ from sebody.explore.ensembles.start_values import Image
 from sebody.explore.ensembles.work import Work, processors
 from sebody.model.model import Model
 from sebody.model.summary import summary
+from sebody.model.variants.copying import copied
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
+from sebody.runs.fingerprint import whole
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
@@ -39,7 +42,7 @@ class Ensemble:
     Parameters
     ----------
     model : Model
-        Must not be changed while runs go on; `run` leaves it as it was.
+        Is copied: what becomes of it later changes nothing here.
     h : float
         Fixed step, also the output grid [time].
     scheme : Scheme, optional
@@ -66,16 +69,21 @@ class Ensemble:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, start: Result | None = None):
-        self.model, self.scheme = model, scheme
-        self._template = Simulation(model, h, scheme, output_every, start=start)
+        self.model, self.scheme = cast(Model, copied(model)), scheme
+        self._template = Simulation(self.model, h, scheme, output_every, start=start)
         self.h, self.every = self._template.h, self._template.every
-        self._lock = Lock()         # the model is changed for moments
+        self._lock = Lock()         # the copy is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}
 
     def __repr__(self) -> str:
         reason = why_one_by_one(self._template)
         how = f"one by one: {reason}" if reason else "eight at a time if they are many"
         return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}; runs {how}>"
+
+    @property
+    def identity(self) -> str:
+        """Hash of all that runs follow from, the same in every process."""
+        return whole(self._template)
 
     @property
     def parameters(self) -> list[str]:
@@ -111,7 +119,8 @@ class Ensemble:
         ------
         InputError
             Before the first run: unknown names, arrays of different lengths, values that a body
-            cannot have, an unknown quantity, a time that is not a multiple of the step.
+            cannot have, an unknown quantity, a time that is not a multiple of the step. Runs with
+            values that a builder refuses, such as limits that leave no room, fail alone.
         """
         return self._run(parameters, t_end, outputs, threads, progress)
 
@@ -143,6 +152,8 @@ class Ensemble:
         read = forms(self._template, kept)
         values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, read, runs, last)
+        with self._lock:
+            outcome.failures |= refused(self.model, found, values, runs)
         began = time.perf_counter()
         image = self._image(found)
         in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)

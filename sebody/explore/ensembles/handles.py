@@ -31,9 +31,12 @@ from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import changes, load_changes
 from sebody.explore.ensembles.changes import Handle
+from sebody.model.element_numbers import refuse_numbers
 from sebody.model.model import Model
+from sebody.model.parts import Element
 
 GRAVITY = "gravity"
+PLACES = "position", "rotation"     # what moves the starts of contacts and stops
 
 
 class Kind(NamedTuple):
@@ -112,6 +115,48 @@ KINDS = (
     Kind("load", lambda model: {e.name: e for e in model.loads if e.law is None}, {
         "amplitude": load_changes.load_amplitude, "table": load_changes.load_table}),
 )
+
+
+def refuse_values(model: Model, names: Iterable[str]) -> None:
+    """Refuse values that parameters of some names have now, where a builder refuses them.
+
+    Raises
+    ------
+    InputError
+        As the builders of contacts, stops, gears and friction: of their own numbers, and where
+        what they touch begins.
+    """
+    for one in checked_parts(model, names):
+        refuse_numbers(model, one)
+
+
+def checked_parts(model: Model, names: Iterable[str]) -> list[Element]:
+    """Parts whose builders have checks of what parameters of these names change."""
+    parts = _contacts(model)
+    owners = [name.rpartition(".") for name in names]
+    if any(quantity in PLACES for *_, quantity in owners):
+        return list(parts.values())
+    return [parts[owner] for owner in dict.fromkeys(owner for owner, *_ in owners)
+            if owner in parts]
+
+
+def refused(model: Model, found: Mapping[str, Handle], values: Mapping[str, Any], runs: int
+            ) -> dict[int, str]:
+    """Runs whose values a builder refuses, and why; the model is changed for moments."""
+    reasons: dict[int, str] = {}
+    if not checked_parts(model, found):
+        return reasons
+    for run in range(runs):
+        try:
+            for name, one in found.items():
+                one.set(values[name][run])
+            refuse_values(model, found)
+        except InputError as error:
+            reasons[run] = str(error)
+        finally:
+            for one in reversed(found.values()):
+                one.reset()
+    return reasons
 
 
 def given(model: Model, parameters: Mapping[str, Any]) -> tuple[dict[str, Handle], int]:

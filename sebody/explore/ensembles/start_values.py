@@ -164,7 +164,7 @@ class Image:
         Infinite ones, which are limits that are not there, are zeros.
         """
         one = self.template
-        system, numbering = build(one.model)
+        system, numbering = build(one.model, grid=one.grid)
         for name in ("routines", "regularized", "massless"):
             getattr(system, name)[:] = getattr(one.system, name)
         state = allocate(one.model, system, numbering, one.h, one.dense)

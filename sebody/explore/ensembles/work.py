@@ -61,7 +61,8 @@ class Work:
         self._stop, self._lock = Event(), lock
         self._done, self._error = 0, None
         self._changes = self._differences() if self.image.linear else None
-        self._order = (alike(self._changes, MEMBERS) if in_lanes else np.arange(outcome.runs))
+        order = alike(self._changes, MEMBERS) if in_lanes else np.arange(outcome.runs)
+        self._order = order[~np.isin(order, list(outcome.failures))]    # others are refused
         self._in_lanes, self._taken, self._threads = in_lanes, 0, 1
 
     def go(self, threads: int, progress: Callable[[float], None] | None) -> None:

@@ -89,9 +89,9 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     for name in made.columns:       # other parameters are <owner>.<name>, but for gravity
         if "." not in name and name not in (*own, GRAVITY):
             raise unknown("parameter", name, (*own, GRAVITY), "a sweep of this scene has")
-    check_plan(plan, made.columns, structural)
+    models = check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))
-    table = _begun(path, _text(build, fixed, outputs, made), made)
+    table = _begun(path, _text(build, fixed, outputs, made, models), made)
     left = np.flatnonzero(~table.done)
     where = (places.cluster(cluster, workers) if cluster is not None or workers is not None else
              places.threads(processors() if threads is None else
@@ -159,18 +159,19 @@ def _begun(path: Path | None, text: str, made: Design) -> Table:
     if path is not None and path.exists():
         table = Table.load(path)
         if table.design != text or not table.has(made.columns):
-            raise InputError(f"{path} is the table of another sweep, with other scenes, parameters "
-                             "or outputs: give another --output, or remove it")
+            raise InputError(f"{path} is the table of another sweep, with other scenes, models, "
+                             "parameters or outputs, or of another version of sebody: give "
+                             "another --output, or remove it")
         return table
     return Table.empty(text, dict(made.columns), made.runs)
 
 
 def _text(build: Callable, fixed: Mapping[str, Any], outputs: Mapping[str, Output],
-          made: Design) -> str:
-    """What makes two sweeps the same."""
+          made: Design, models: list[str]) -> str:
+    """What makes two sweeps the same: also the models, whatever file they are from."""
     return json.dumps([getattr(build, "__module__", ""), getattr(build, "__qualname__", ""),
                        sorted((n, str(v)) for n, v in fixed.items()),
-                       [(n, str(o)) for n, o in outputs.items()], made.text()])
+                       [(n, str(o)) for n, o in outputs.items()], made.text(), models])
 
 
 __all__ = ["Distribution", "Table", "sweep"]

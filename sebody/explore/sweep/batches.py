@@ -148,8 +148,13 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str]) -> None:
+def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str]) -> list[str]:
     """Build the first run and check all values, so that nothing wrong is found half-way.
+
+    Returns
+    -------
+    list of str
+        Hashes of the models that were built: tables of other models are those of other sweeps.
 
     Raises
     ------
@@ -160,10 +165,10 @@ def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str])
     of_structure = {n: v for n, v in columns.items() if n in structural}
     first = tasks_of(plan, of_structure, structural, np.arange(1), 1)[0][0]
     ensemble, t_end = _ensemble(plan, first.structure)
-    for structure in _others(of_structure, first.structure):
-        _built(plan, structure)
+    others = [_built(plan, structure) for structure in _others(of_structure, first.structure)]
     ensemble.check({name: values for name, values in columns.items() if name not in structural},
                    t_end, dict(plan.outputs))
+    return [f"{one.identity} until {end!r}" for one, end in ((ensemble, t_end), *others)]
 
 
 def _others(columns: Mapping[str, NDArray], first: tuple[tuple[str, Any], ...]
