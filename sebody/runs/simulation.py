@@ -17,6 +17,7 @@ from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
 from sebody.engine.system import System
+from sebody.model.control_order import misspelt
 from sebody.model.model import Model
 from sebody.model.summary import summary
 from sebody.results.recording import Start
@@ -37,6 +38,7 @@ from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
+from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 from sebody.runs.variable_steps import FIRST_STEP, begin_steps
 
@@ -110,6 +112,8 @@ class Simulation:
         self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
+        for name, message in misspelt(model).items():
+            self.watch.say(f"signal {name}", message)
         if threads > 1 and not self.system.shared.mail.size:
             self.watch.say("threads", TOO_SMALL.format(threads, self.numbering.free))
         self.seconds = 0.0
@@ -118,6 +122,7 @@ class Simulation:
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
         user_faults.forget(model)
         self.begun, self.tolerance = start, tolerance
+        self._unjudged = any("teeth" in load.tuned for load in model.loads)
         self._begin()
         self.rows.begin()
 
@@ -139,6 +144,14 @@ class Simulation:
         self.sampling.check(self.h, self.tolerance is None)
         if self.sampling.begin():
             self._accelerate()
+
+    def _judge_teeth(self) -> None:
+        """Say once what teeth do to vibrations whose stiffness was not given."""
+        if self._unjudged:
+            gears = Gears(self.model, self.numbering, self.system, self.state)
+            for key, message in teeth_remarks(gears).items():
+                self.watch.say(key, message)
+        self._unjudged = False
 
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
@@ -176,10 +189,11 @@ class Simulation:
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
-        if progress is None and self._piece(t_end):
+        if not self._unjudged and progress is None and self._piece(t_end):
             return self
         self.flush()
         user_faults.refuse_changed(self.model)
+        self._judge_teeth()
         last = last_step(t_end, self.h, self.time, int(self.state.control.grid))
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "

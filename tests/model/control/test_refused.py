@@ -5,6 +5,7 @@ import pytest
 from controlled_rotor import PERIOD, controlled, rotor
 
 from sebody import InputError, Simulation, SimulationError
+from sebody.basics.errors import LimitWarning
 from sebody.control import pid, state_feedback
 
 
@@ -40,6 +41,25 @@ def test_faults_of_a_run(tmp_path):
         Simulation(model, 0.01)
 
 
+def test_a_misspelt_output_is_named():
+    """A name that no actuator has is a signal: one like that of an idle actuator is warned of."""
+    def said(sets, **reader):
+        model = rotor()
+        model.actuator("brake", joint="hinge")
+        model.controller("c", state_feedback([[1.0]] * len(sets)), ["hub.rotation"], sets,
+                         PERIOD)
+        if reader:
+            model.controller("d", state_feedback([[1.0]]), **reader, period=PERIOD)
+        return [one for one in Simulation(model, 0.01).result().warnings if "did you mean" in one]
+    with pytest.warns(LimitWarning, match="controller 'c' sets 'moter', which no actuator is "
+                      "called and no controller reads: did you mean 'motor'"):
+        assert len(said(["moter"])) == 1
+    assert len(said(["motor", "braek"])) == 1
+    for quiet in (["motor"], ["motor", "motor_raw"], ["estimate"]):
+        assert not said(quiet)
+    assert not said(["moter"], inputs=["moter"], outputs=["motor"])
+
+
 def test_what_is_refused():
     def add(**given):
         model = rotor()
@@ -66,7 +86,10 @@ def test_what_is_refused():
              "function of"),
             ({"law": 3}, "controller 'c' is 3: give a function of"),
             ({"states": [1.0]}, "is given 1 states, and its law has 4"),
-            ({"name": "angle"}, "the name is taken by a sensor or controller")):
+            ({"name": "angle"}, "controller 'angle' cannot be called 'angle': a sensor has"),
+            ({"name": "hub"}, "cannot be called 'hub': a node has that name"),
+            ({"outputs": ["hub"]}, "a signal cannot be called 'hub': a node has that name"),
+            ({"outputs": ["hinge"]}, "a signal cannot be called 'hinge': a joint has that")):
         with pytest.raises(InputError, match=message):
             add(**given)
     model = rotor()
