@@ -28,6 +28,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
+FASTER = 100.0          # square of a frequency, of the largest stiffness over mass of a coordinate
 
 
 def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
@@ -69,6 +70,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
+        stiffest=np.array([_stiffest(model)]),
         damped=np.array([int(any(b.reduced.damping is not None for b in model.bodies.values()))]),
         guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
@@ -114,6 +116,16 @@ def _law_scratch(model: Mechanism, element: Element) -> int:
     width = sum(t.start.size for t in element.dof_blocks) + len(element.law.modes)
     return scratch(len(controller.inputs), controller.states.size, len(controller.outputs), width,
                    width)
+
+
+def _stiffest(model: Mechanism) -> float:
+    """Bound of the squares of frequencies that bodies hold: `FASTER` than a coordinate alone."""
+    largest = 0.0
+    for body in {id(b.reduced): b.reduced for b in model.bodies.values()}.values():
+        stiffness, mass = np.diag(body.stiffness), np.diag(body.mass)
+        moved = mass > 0.0
+        largest = max(largest, float((stiffness[moved] / mass[moved]).max(initial=0.0)))
+    return FASTER * largest
 
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:

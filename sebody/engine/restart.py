@@ -176,14 +176,20 @@ def _evaluate(system, state, wanted):
 
 @compiled
 def subtract(system, state):
-    """Subtract a correction; returns the norms of it, of the solution and of the residual."""
+    """Subtract a correction; returns the norms of it, of the solution and of the residual.
+
+    Where a body has no inertia about an axis, its residual is compared with what the regularization
+    adds there: beside nothing but a thousandth of that, rounding would count as a contradiction.
+    """
     norm = size = left = 0.0
     for i in range(system.diagonal.size):
         d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
+        thin = system.massless_axes[i] > 0.0 and state.control.regularized == 1
         x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
         norm += d * d
         size += x * x
-        left += r * r
+        left += (r * r / (1.0 + state.scale[i] * state.scale[i] * state.regularization[i]) if thin
+                 else r * r)
     norm = math.sqrt(norm)
     to_body_axes(system, state.frames, state.correction, True)
     for i in range(system.diagonal.size):
@@ -220,6 +226,8 @@ def _correct(system, state):
         control.wanted = EVALUATED
     ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
                                                        and control.fresh >= MOST_MATRICES)
+    if ended and stays and norm <= clock.floor * system.stiffest[0]:
+        return DONE         # frames of bodies are found to rounding, and so are their forces
     return FAILED if ended else SOLVE
 
 

@@ -96,6 +96,7 @@ class System(Arrays):
     control             sensors, controllers and inputs
     shared              mail and scratch memory of threads; empty for one thread
     regularized         (1,) 1 where constraints are redundant or something without mass can move
+    stiffest            (1,) bound of the squares of frequencies that bodies hold [1/time^2]
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
@@ -158,6 +159,7 @@ class System(Arrays):
     shared: Shared
     regularized: NDArray
     massless: NDArray
+    stiffest: NDArray
     damped: NDArray
     guarded: NDArray
     routines: NDArray

@@ -49,6 +49,7 @@ class Recording:
     start: Start | None = None
     warnings: tuple[str, ...] = ()  # of the run, see sebody.runs.limits.watch
     error: float | None = None      # estimate over allowed error: see sebody.runs.accuracy
+    stability: str = ""             # of an equilibrium, see `sebody.runs.loading`
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
     numbers: Any = field(default=None, init=False, repr=False)  # see sebody.results.histories

@@ -272,6 +272,8 @@ class Result(Recording):
         laws = {load.name for load in self.model.loads if load.law is not None}     # of none
         lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
                   for k, name in enumerate(self.numbering.port_names) if name not in laws]
+        if self.stability:
+            lines.append(f"stability            {self.stability}")
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
                             f"{1e3 * self.all_seconds:.3g} ms including the coarser runs")

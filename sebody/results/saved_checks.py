@@ -25,7 +25,8 @@ from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery
 
 NOTES = {"seconds": float, "failure": str, "warnings": list[str], "error": float | None,
-         "all_seconds": float, "start": list | None, "advice": dict[str, list[str]],
+         "all_seconds": float, "stability": str, "start": list | None,
+         "advice": dict[str, list[str]],
          "checksums": dict[str, int]}
 _PLAIN = {float: (int, float), int: (int,), str: (str,), bool: (bool,)}
 

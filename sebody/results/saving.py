@@ -33,7 +33,8 @@ from sebody.results.units import unit
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
 VERSION = 4
 OWN = "sebody/"         # beginning of the names of members that are no named histories
-NOTES = "seconds", "failure", "warnings", "error", "all_seconds"        # members of a Recording
+# members of a Recording
+NOTES = "seconds", "failure", "warnings", "error", "all_seconds", "stability"
 WHAT, REPEAT = "results file", "run the model again"
 REMEDY = "give one written by Result.save; 'sebody inspect' reads body files"
 NUMBERS = Member((None,), finite=False)     # of the model's arrays
@@ -104,7 +105,8 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         if notes["version"] != VERSION:
             raise InputError(f"{file} is of version {notes['version']}, this program reads "
                              f"{VERSION}: numpy.load or h5py reads its named histories")
-        check_notes({"checksums": {}, **notes})     # older files have none
+        notes = {"checksums": {}, "stability": "", **notes}     # older files have none
+        check_notes(notes)
         text = json_of(reader, "model")
         numbers = Table(file, REPEAT, {"numbers": NUMBERS}).read(
             reader, others=set(reader.headers) - {"numbers"})
@@ -118,7 +120,7 @@ def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
         _check_times(table, arrays["rows"])
         made = _made(make, notes, arrays, model, numbering)
         noted = {"model": np.array(json.dumps(text)), **numbers, **arrays}
-        if odd := changed(noted, notes.get("checksums")):
+        if odd := changed(noted, notes["checksums"]):
             raise table.fault(f"differs from what was saved in {', '.join(odd)}")
         return made
 

@@ -2,9 +2,6 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from scipy.linalg import null_space
-
 from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import MOTION
@@ -14,10 +11,10 @@ from sebody.runs.limits.axial import Axial, Load
 from sebody.runs.limits.body_limits import limits_of, remedy
 from sebody.runs.limits.thresholds import FOLDED
 from sebody.runs.simulation import Simulation
+from sebody.runs.stability import Stiffness
 from sebody.runs.state_derivatives import derivative
 
 NEAR = 0.9          # of the tension at which a body folds up: no equilibrium is found there
-UNSTABLE = 1e-9     # stiffness below zero, of the largest of the scaled matrix
 
 
 class Tensions(NamedTuple):
@@ -72,12 +69,4 @@ class Tensions(NamedTuple):
 
 def _unstable(run: Simulation) -> bool:
     """Whether a motion that the constraints allow has a negative stiffness."""
-    stiffness = derivative(run, 0.0, 0.0, 1.0).toarray()
-    fixed = run.system.is_multiplier[:len(stiffness)] > 0.0
-    stiffness = (stiffness + stiffness.T) / 2
-    scale = 1.0 / np.sqrt(np.maximum(np.abs(stiffness).max(axis=0), 1e-300))
-    stiffness = scale[:, None] * stiffness * scale
-    basis = (null_space(stiffness[np.ix_(fixed, ~fixed)]) if fixed.any() else
-             np.eye(len(stiffness)))
-    values = np.linalg.eigvalsh(basis.T @ stiffness[np.ix_(~fixed, ~fixed)] @ basis)
-    return bool(len(values) and values[0] < -UNSTABLE * np.abs(values).max())
+    return not Stiffness(run, derivative(run, 0.0, 0.0, 1.0), 0.0).stable()

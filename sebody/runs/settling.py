@@ -25,14 +25,17 @@ from sebody.results import rotations
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
+from sebody.runs.stability import Stiffness
 from sebody.runs.state_derivatives import rotating
 
-ITERATIONS = 50
+FULL = 25                   # iterations with full corrections, whatever their size
+ITERATIONS = 50             # iterations with shortened ones
 LEAST = 1.0 / 64.0          # part of a correction: those that do not shrink are halved, since what
                             # friction holds may slide to and fro between two of them
+NUDGE = 1e-3                # of an unstable state along its softest motion, in extents or radians
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
-STEPS = 300                 # of a motion to rest
+STEPS = 1500                # of a motion to rest: arches of forty rods that fall need 500
 FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
 SLOW, SOFTEST = 0.1, 1e-9   # steps that shrink by less need softer springs, down to this rate
 SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
@@ -51,45 +54,79 @@ class Springs(NamedTuple):
     R: NDArray
 
 
-def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None = None,
-            stiff: bool = False) -> bool:
-    """Newton's iteration with the exact tangent; False where it does not converge.
+class Found(NamedTuple):
+    """An equilibrium by Newton's iteration."""
 
-    With springs it may end where a correction is `ROUGH` times what they are stretched by. Of
-    `stiff` structures none is asked that has motions without stiffness.
+    tangent: csc_matrix     # before the last correction
+    first: float            # size of the first correction
+
+
+def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None = None,
+            stiff: bool = False) -> Found | None:
+    """Newton's iteration with full corrections, then, from the same start, with shortened ones.
+
+    Slender structures need full ones: a correction across stretches such a structure to second
+    order, which the next one takes back, so that corrections grow before they shrink. What friction
+    holds needs shortened ones.
+
+    Parameters
+    ----------
+    springs : Springs, optional
+        With these it may end where a correction is `ROUGH` times what they are stretched by.
+    stiff : bool
+        Nothing is found where motions have no stiffness.
+
+    Returns
+    -------
+    Found or None
+        None where no equilibrium is found.
+    """
+    start = run.state.now.copy()
+    found, ended = _balance(run, tolerance, spin, springs, stiff, FULL, 1.0)
+    if not ended:
+        run.state.now[:] = start
+        found, _ = _balance(run, tolerance, spin, springs, stiff, ITERATIONS, LEAST)
+    return found
+
+
+def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None, stiff: bool,
+             iterations: int, least: float) -> tuple[Found | None, bool]:
+    """The equilibrium, if one is found, and whether this ended before all iterations.
+
+    Corrections that do not shrink are halved, to no less than `least` of them.
     """
     state, n = run.state, run.numbering.free
     state.frames_old[:] = state.frames
     far = FAR if np.any(run.system.magnitude[:n] > 0.0) else 1.0    # else of what it leads to
-    last, part = np.inf, 1.0
-    for _ in range(ITERATIONS):
+    first, last, part = np.nan, np.inf, 1.0
+    for _ in range(iterations):
         try:
-            tangent, residual = _linear(run, spin, springs)
+            tangent, residual = linear(run, spin, springs)
         except InputError:              # too far: a state that no element can evaluate
-            return False
-        solver, correction = Scaled(tangent), np.zeros(run.numbering.total)
+            return None, True
+        solver = Scaled(tangent)
         if stiff and not solver.regular:
-            return False
-        correction[:n] = _solution(run, solver, residual)
-        change = size(run, correction[:n])
+            return None, True
+        correction = solution(run, solver, residual)
+        change = size(run, correction)
         if not np.isfinite(change) or change > far:     # perhaps to an unstable place
-            return False
-        part = max(part / 2.0, LEAST) if change > part * last else min(2.0 * part, 1.0)
-        correction *= part
-        last = change
-        to_body_axes(run.system, state.frames, correction, True)
-        state.R_old[:], state.dq[:] = state.R, -correction
-        state.q[:] -= correction
-        update_rotations(run.system, state)
-        if change < tolerance or springs and change < ROUGH * size(run, _displacement(
+            return None, True
+        part = max(part / 2.0, least) if change > part * last else min(2.0 * part, 1.0)
+        rounded = change < DRIFT * tolerance and change > last / 2.0    # gets no shorter
+        first, last = change if last == np.inf else first, change
+        _move(run, -part * correction)
+        if change < tolerance or rounded or springs and change < ROUGH * size(run, _displacement(
                 run, springs.q, springs.R)):
             spin.move(run)
-            return True
-    return False
+            return Found(tangent, first), True
+    return None, False
 
 
 def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     """Let the structure move to where it rests; False where it does not come to rest.
+
+    Each step must end where the potential of loads and springs is least: at a largest one, or at a
+    saddle, the springs are too soft.
 
     Parameters
     ----------
@@ -103,9 +140,11 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     last = np.inf
     for _ in range(STEPS):
         kept, ending = run.state.now.copy(), rate <= lowest
-        state = balance(run, tolerance, spin, _springs(run, rate))
-        moved = size(run, _moved(run, kept))
-        if not state or moved > FAR:
+        springs = _springs(run, rate)
+        found = balance(run, tolerance, spin, springs)
+        moved = size(run, moved_by(run, kept))
+        if found is None or moved > FAR or not (
+                spin.rotates or _is_least(run, linear(run, spin, springs)[0], unit, ending)):
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
             if rate > unit / LAST:
@@ -116,10 +155,31 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
         if ending and moved > SLOW * last:
             lowest = max(lowest / FASTEST, SOFTEST * unit)
         last = moved
-        if size(run, _moved(run, start)) > FURTHEST:
+        if size(run, moved_by(run, start)) > FURTHEST:
             return False
         rate, faster = max(rate / faster, lowest), min(SLOWEST * faster, FASTEST)
     return False
+
+
+def _is_least(run: Simulation, tangent: csc_matrix, unit: float, ending: bool) -> bool:
+    """Whether a potential is least; stiffer springs cost less than certainty until they end."""
+    stiffness = Stiffness(run, tangent, unit)
+    return stiffness.stable() if ending else stiffness.surely_stable()
+
+
+def nudge(run: Simulation, motion: NDArray, side: float) -> None:
+    """Move a state a little along a motion, (unknowns,), to one of its sides."""
+    _move(run, side * NUDGE / max(size(run, motion), 1e-300) * motion)
+
+
+def _move(run: Simulation, change: NDArray) -> None:
+    """Add a change of the unknowns, in their axes."""
+    state, full = run.state, np.zeros(run.numbering.total)
+    full[:len(change)] = change
+    to_body_axes(run.system, state.frames, full, True)
+    state.R_old[:], state.dq[:] = state.R, full
+    state.q[:] += full[:state.q.size]
+    update_rotations(run.system, state)
 
 
 def size(run: Simulation, change: NDArray) -> float:
@@ -136,7 +196,7 @@ def size(run: Simulation, change: NDArray) -> float:
     return 0.0 if largest == 0.0 else float(np.abs(change).max() / largest)
 
 
-def _linear(run: Simulation, spin: Spin, springs: Springs | None) -> tuple[csc_matrix, NDArray]:
+def linear(run: Simulation, spin: Spin, springs: Springs | None) -> tuple[csc_matrix, NDArray]:
     """Tangent and residual, with those of the springs."""
     spin.move(run)
     tangent, residual = rotating(run, spin)
@@ -146,7 +206,7 @@ def _linear(run: Simulation, spin: Spin, springs: Springs | None) -> tuple[csc_m
     return csc_matrix(tangent + diags(springs.stiffness)), residual + pull
 
 
-def _solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
+def solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
     """Correction; motions without stiffness and load, such as the angle of a spin, are kept.
 
     No numbers where a load acts on such a motion.
@@ -169,7 +229,7 @@ def _springs(run: Simulation, rate: float) -> Springs:
                    run.state.R.copy())
 
 
-def _moved(run: Simulation, before: NDArray) -> NDArray:
+def moved_by(run: Simulation, before: NDArray) -> NDArray:
     """Displacement of the unknowns since a state, (unknowns,)."""
     parts = run.state.recorded_parts
     return _displacement(run, before[parts["q"]], before[parts["R"]])
@@ -194,7 +254,7 @@ def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
 def pace(run: Simulation, spin: Spin) -> float:
     """Square of the rate at which the loads begin to move the structure [1/time^2]."""
     unit = _springs(run, 1.0).stiffness
-    tangent, residual = _linear(run, spin, None)
+    tangent, residual = linear(run, spin, None)
     alone = diags((unit > 0.0).astype(float))
     inert = tangent - alone @ tangent @ alone + diags(unit)
-    return size(run, _solution(run, Scaled(csc_matrix(inert)), residual))
+    return size(run, solution(run, Scaled(csc_matrix(inert)), residual))

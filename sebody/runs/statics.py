@@ -13,19 +13,17 @@ from sebody.engine.evaluate import set_loads
 from sebody.model.model import Model
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
-from sebody.runs import user_faults
-from sebody.runs.folding import Tensions
+from sebody.runs.loading import CHOICES, Loading
 from sebody.runs.rotating_frame import Spin
-from sebody.runs.settling import balance, pace, settle
+from sebody.runs.settling import pace
 from sebody.runs.simulation import Simulation, Standstill
 from sebody.runs.tuning import unbend
 
 STICKING = 1e-7             # of extents: by which the loads move what sticks, no more
-SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 
 
 def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
-                spin: ArrayLike | None = None) -> Result:
+                spin: ArrayLike | None = None, unstable: str = "leave") -> Result:
     """Equilibrium under gravity and the loads of a time, applied in equal steps.
 
     Parameters
@@ -39,12 +37,18 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     spin : (3,) array_like or float, optional
         Angular velocity of a frame about the origin in which everything rests, fixed nodes,
         supports and loads included [1/time]; a number in a plane.
+    unstable : {"leave", "keep"}
+        What becomes of a state that is not stable, as of a column above its buckling load: it is
+        left for a stable one, which the structure moves to, or kept, with a warning. Nothing is
+        said of stability where loads or friction leave no potential (the tangent is not symmetric),
+        or in a rotating frame.
 
     Returns
     -------
     Result
         One row a load step; its time is the share of the load, from 0 to 1. Velocities and
-        accelerations are those of the rotation.
+        accelerations are those of the rotation. Its `stability` says whether the last state is
+        stable, and at which share of the load an unstable one was left or kept.
 
     Raises
     ------
@@ -57,46 +61,19 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     steps = inputs.integer(steps, "steps", least=1)
     t = inputs.number(t, "t")
     tolerance = inputs.number(tolerance, "tolerance", above=0, below=1)
+    unstable = inputs.choice(unstable, "unstable", CHOICES)
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
     _refuse_states(model)
     run = _at_rest(model, t)
-    state, field = run.state, run.state.coefficients[FIELD:].copy()
-    memory.check(8.0 * steps * state.now.size, f"steps is {steps}: the record of all",
+    memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
                  "give fewer")
-    steady = Spin.of(run, spin)
-    loads = state.loads.copy()
-    run.rows.stretches = [state.now[None].copy()]
-    tensions = Tensions.of(run)
-    share, step, slack = 0.0, 1.0 / steps, False
-    while share < 1.0 - 1e-12:
-        start_state = state.now.copy()
-        target = min(share + step, 1.0)
-        state.loads[:], state.coefficients[FIELD:] = target * loads, target * field
-        spinning = steady.times(np.sqrt(target))
-        at_rest = balance(run, tolerance, spinning, stiff=slack)
-        if not at_rest and (slack or steady.rotates or share == 0.0 and step == 1.0 / steps):
-            # nothing may hold it at the start, and motions of one that spins may have no stiffness
-            state.now[:] = start_state
-            at_rest = settle(run, tolerance, spinning, near=slack)
-            slack |= at_rest and not steady.rotates
-        if at_rest:
-            if not steady.rotates and (folded := tensions.spurious(run)):
-                state.now[:] = start_state
-                raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
-                                      _result(run, loads, field))
-            share = target
-            state.now[RECORD_T] = share
-            run.rows.stretches.append(state.now[None].copy())
-            continue
-        state.now[:] = start_state
-        step /= 2
-        if step < SMALLEST:
-            reason = user_faults.fault(model, -np.inf) or tensions.reason(run) or (
-                "the structure may buckle, or a mechanism may be free to move; use more steps or "
-                "supports")
-            raise SimulationError(f"no equilibrium was found above {share:.4g} of the load: "
-                                  f"{reason}", _result(run, loads, field))
-    return _result(run, loads, field)
+    path = Loading(run, Spin.of(run, spin), steps, tolerance, unstable == "keep")
+    try:
+        path.follow()
+    except SimulationError as error:
+        error.result = _result(run, path)
+        raise
+    return _result(run, path)
 
 
 def _at_rest(model: Model, t: float) -> Simulation:
@@ -134,20 +111,25 @@ def _refuse_states(model: Model) -> None:
                              "give the controller a law without states")
 
 
-def _result(run: Simulation, loads: NDArray, field: NDArray) -> Result:
+def _result(run: Simulation, path: Loading) -> Result:
+    stability = path.verdict()
+    if stability.startswith("unstable"):
+        run.watch.say("stability", f"the equilibrium is {stability}: a disturbance lets it move "
+                      "away" + " (unstable='leave' looks for a stable one)" * path.keep, 4)
     run.watch.look(run.model, run.numbering, run.rows.all())
     results = run.result()
-    results.forces = _forces(run, results.unique_rows, loads, field)
+    results.stability = stability
+    results.forces = _forces(run, results.unique_rows, path)
     return results
 
 
-def _forces(run: Simulation, rows: NDArray, loads: NDArray, field: NDArray) -> Forces:
+def _forces(run: Simulation, rows: NDArray, path: Loading) -> Forces:
     """Forces under the share of the load of each row; the time in a row is that share."""
     state, forces = run.state, []
     kept = [array.copy() for array in (state.now, state.loads, state.coefficients)]
     for row in rows:
-        state.now[:], share = row, row[RECORD_T]
-        state.loads[:], state.coefficients[FIELD:] = share * loads, share * field
+        state.now[:] = row
+        path.load(row[RECORD_T])
         evaluate(run.system, state, RESIDUAL, RESIDUAL, "a load step")
         forces.append((state.g.copy(), state.residual.copy()))
     state.now[:], state.loads[:], state.coefficients[:] = kept

@@ -323,3 +323,12 @@ def test_chains_are_compared_with_links_one_by_one():
 def test_chains_are_compared_with_several_threads():
     row = imported("bench_chain").measure_threads(70, "B", pairs=1, threads=2, until=0.05)
     assert row["one"] > 0.0 and row["several"] > 0.0 and row["ratio"] > 0.0 and row["same"]
+
+
+def test_columns_and_chains_are_found():
+    bench = imported("bench_statics")
+    row, = bench.columns((4,), (400,), (1.05,), (1e-3,))
+    assert abs(row["error"]) < 1e-2 and row["stability"] == "stable" and row["lowest"] > 0.0
+    rows = bench.chains(("arc", "straight"), (4,), (2e11,), (1,))
+    assert len(rows) == 2 and all(row["error"] < 1e-4 for row in rows)
+    assert "1 of 1" in bench.table(rows)
