@@ -160,7 +160,9 @@ def _reject(state, balance, elsewhere):
         guard.rejections += 1.0
         guard.most_halved = max(guard.most_halved, halved)
     if control.adaptive == 1:
-        state.clock.largest_error = AIM        # as after an error: longer ones not soon
+        # as after an error: longer ones not soon
+        half = 0.5 * state.clock.current_step
+        state.clock.rate = max(state.clock.rate, AIM / (half * half * half))
     return True
 
 
