@@ -83,8 +83,8 @@ class State(Arrays):
                           angle, its cosine and sine, see `links.remember`
     error_weights         (N,) one over the error that is allowed of an unknown in a step
     schedule              (k, 2) end and length of planned steps; none where errors choose them
-    step_log              (m, 3) end, length and error over h^3 of the last m steps; m is 0 in most
-                          runs
+    step_log              (m, 3) end, length and error over h^3 of the last m steps, lengths without
+                          halvings where energy would grow; m is 0 in most runs
     --------------------  --------------------------------------------------------------------------
     power ports
     ------------------------------------------------------------------------------------------------

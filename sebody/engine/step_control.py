@@ -43,6 +43,7 @@ GAIN = 1.4              # smallest factor by which steps are lengthened
 LONGEST = 4.0           # largest factor by which steps are lengthened
 SHORT = 0.2             # smallest factor by which a rejected step is shortened
 PATIENCE = 10           # steps before the next lengthening, unless by the largest factor
+SLOWLY = 35             # the same while steps are halved because energy grew
 WINDOW = 0.5            # of the time since the last event: what a window of errors lasts at least
 LEAST = 50.0            # steps that it lasts at least
 EVENT = 8.0             # error that is an event
@@ -75,12 +76,14 @@ def accurate(system, state, scheme):
     rows = state.step_log.shape[0]
     if rows > 0:
         row = control.steps % rows
-        state.step_log[row, 0], state.step_log[row, 1], state.step_log[row, 2] = clock.end, h, rate
+        whole = h * 2.0 ** state.guard.halved       # a plan is halved anew where energy grows
+        state.step_log[row, 0], state.step_log[row, 1] = clock.end, whole
+        state.step_log[row, 2] = rate
     if state.schedule.shape[0] > 0:
         if control.held == 0:
             clock.chosen = REGROWN * h
     else:
-        _choose_by_window(clock, control, rate)
+        _choose_by_window(state, rate)
     return True
 
 
@@ -102,10 +105,13 @@ def _local_error(system, state, scheme):
 
 
 @compiled
-def _choose_by_window(clock, control, rate):
+def _choose_by_window(state, rate):
     """Lengthen steps if the largest error over h^3 of the window under way, and of the one before,
     allows it.
+
+    Steps that were halved because energy grew are lengthened slowly.
     """
+    clock, control, guard = state.clock, state.control, state.guard
     control.held += 1
     clock.rate = max(clock.rate, rate)
     largest = max(clock.rate, clock.rate_before)
@@ -114,6 +120,8 @@ def _choose_by_window(clock, control, rate):
             WINDOW * (clock.end - clock.origin), LEAST * chosen):
         clock.rate_before, clock.rate, clock.begun = clock.rate, rate, clock.end
     wanted = (AIM / max(largest, 1e-300)) ** (1.0 / 3.0)
+    if guard.halved > 0.0:
+        wanted = min(wanted, GAIN * chosen) if control.held >= SLOWLY else 0.0
     if wanted >= (GAIN if control.held >= PATIENCE else LONGEST) * chosen:
         clock.chosen = min(wanted, LONGEST * chosen)
         control.held = 0

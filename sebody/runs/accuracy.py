@@ -30,8 +30,8 @@ BISECTIONS = 30     # of the order that three runs show
 SECOND = 1.8, 2.3   # orders that are that of the scheme
 REGULAR = 1.3, 3.0  # orders of differences that fall regularly, but not with that order yet
 CAUTION = 0.5       # by which an order may become less
-SURE = 0.1          # share of the tolerance in which two runs are enough
-HOPELESS = 0.5      # three refinements must reduce the difference of runs by this factor
+SURE = 0.35         # share of the tolerance in which two runs are enough
+HOPELESS = 0.5      # share of the last three differences that the next one must be below
 RESOLVED = 30.0     # divisor of planned steps up to which runs may be too coarse to converge
 
 
@@ -84,19 +84,21 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
     """The run that is within the tolerance `wanted`, after coarser ones."""
     runs = _Runs(model, h, t_end, wanted, scheme, progress, start, threads)
     runs.plan()
+    smooth = not any(load.tuned for load in model.loads)    # without friction and backlash
     before, divisors, differences = runs.run(1.0), [1.0, REFINED], []
     estimates: list[Estimate] = []
     while True:
         now = runs.run(divisors[-1])
         differences.append(difference(now, before, wanted))
-        estimates.append(estimated(divisors[-3:], differences[-2:]))
+        estimates.append(estimated(divisors[-3:], differences[-2:], smooth))
         last = estimates[-1]
         now.error, now.all_seconds = last.error, runs.seconds
         if _good_enough(estimates):
             for message in now.warnings:
                 warnings.warn(message, LimitWarning, stacklevel=3)
             return now
-        if divisors[-1] > RESOLVED and min(differences[-3:]) > HOPELESS * differences[-4]:
+        if (divisors[-1] > RESOLVED and last.error > 1.0
+                and differences[-1] > HOPELESS * max(differences[-4:-1])):
             raise SimulationError(
                 "the error does not decrease with the step: it stays at "
                 f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. The motion may "
@@ -129,7 +131,7 @@ class _Runs:
 
     def run(self, divisor: float) -> Result:
         """One run with the planned steps divided by a number."""
-        return self._one(Plan(self.schedule, divisor, np.inf)).result()
+        return self._one(Plan(self.schedule, divisor, np.inf, stiff=True)).result()
 
     def _one(self, plan: Plan) -> Simulation:
         """A run; what is wrong with a coarse one need not stay, so it does not warn."""
@@ -164,16 +166,17 @@ class Estimate(NamedTuple):
     second: bool = False    # of the order of the scheme
 
 
-def estimated(divisors: Sequence[float], differences: Sequence[float]) -> Estimate:
+def estimated(divisors: Sequence[float], differences: Sequence[float], smooth: bool = True
+              ) -> Estimate:
     """The error of the last of three runs, from differences of each run from the one before.
 
-    Errors ``c k^-p`` of runs with steps h/k have differences whose ratio tells p. Of two runs, and
-    of differences that do not fall so, the error is taken to fall with the number of steps, and to
-    be no less than the last difference.
+    Errors ``c k^-p`` of runs with steps h/k have differences whose ratio tells p. Of two runs, of
+    differences that do not fall so, and of motions that are not smooth, because of friction, the
+    error is taken to fall with the number of steps, and to be no less than the last difference.
     """
     k, last = np.array(divisors) / divisors[-1], float(differences[-1])
     cautious = max(_falling(last, k[-2], 1.0), last)
-    if len(differences) < 2:
+    if len(differences) < 2 or not smooth:
         return Estimate(cautious, cautious)
     low, high = SLOWEST, QUICKEST
     for _ in range(BISECTIONS):

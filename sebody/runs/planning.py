@@ -40,11 +40,22 @@ class Plan(NamedTuple):
     finer: float = 1.0      # by which these are divided
     allowed: float = 1.0    # error of a step over its tolerance above which it is repeated
     logged: int = 0         # steps that are logged between two looks
+    seconds: float = 0.0    # in the loop that the run took which the plan is from
+    stiff: bool = False     # bristles and teeth are stiff for these steps, not by the output grid
 
     @property
     def steps(self) -> NDArray:
         """The schedule, divided."""
         return self.schedule / (1.0, self.finer)
+
+
+    @property
+    def usual(self) -> float:
+        """Median length of the steps."""
+        ends, lengths = self.steps.T
+        counts, order = np.diff(ends, prepend=0.0) / lengths, np.argsort(lengths)
+        half = np.searchsorted(np.cumsum(counts[order]), 0.5 * counts.sum())
+        return float(lengths[order][half])
 
 
 class StepLog:
@@ -63,7 +74,7 @@ class StepLog:
 
     def rows(self) -> NDArray:
         """(steps, 3) all of them."""
-        return np.concatenate(self._rows)
+        return np.concatenate([np.zeros((0, 3)), *self._rows])
 
 
 def planned(log: NDArray, corners: NDArray, finer: float = 1.0) -> NDArray:
@@ -81,11 +92,14 @@ def planned(log: NDArray, corners: NDArray, finer: float = 1.0) -> NDArray:
     Returns
     -------
     (k, 2) ndarray
-        End of each piece, the last one infinite, and length of the steps in it.
+        End of each piece, and length of the steps in it and, in the last one, after it; none
+        without a step in the log.
     """
+    if not len(log):
+        return np.zeros((0, 2))
     ends = log[:, 0]
     inside = corners[(corners > 0.0) & (corners < ends[-1])]
-    edges = np.concatenate([[0.0], inside if len(inside) < MOST_STRETCHES else [], [np.inf]])
+    edges = np.concatenate([[0.0], inside if len(inside) < MOST_STRETCHES else [], ends[-1:]])
     pieces = []
     for begin, end in zip(edges, edges[1:], strict=False):
         rows = log[(ends > begin * (1.0 + 1e-9)) & (ends <= end * (1.0 + 1e-9))]
@@ -93,7 +107,6 @@ def planned(log: NDArray, corners: NDArray, finer: float = 1.0) -> NDArray:
             piece = _planned_stretch(rows, begin, finer)
             piece[-1, 0] = end
             pieces.append(piece)
-    pieces[-1][-1, 0] = np.inf
     return np.concatenate(pieces)
 
 

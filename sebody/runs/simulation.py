@@ -132,7 +132,7 @@ class Simulation:
         """Find the initial state: velocities, accelerations, what sticks, the first step."""
         model, numbering, state = self.model, self.numbering, self.state
         if self.tolerance is not None:
-            state.clock.natural = natural_step(model, self.h, self.tolerance) / self.plan.finer
+            state.clock.natural = natural_step(model, self.h, self.tolerance, self.plan)
         if self.begun is not None:
             take(model, numbering, state, self.begun)
         self.start: Start = begin(model, self.system, numbering, state)
@@ -258,7 +258,9 @@ class Simulation:
         count = last - control["grid"]
         if not 0 < count <= FEW or abs(steps - last) > OFF_GRID:
             return False
-        if self.sampling.needs_looks or self.plan.logged or (buffer := self.rows.buffer(count + 1)) is None:
+        if self.sampling.needs_looks or self.plan.logged:
+            return False
+        if (buffer := self.rows.buffer(count + 1)) is None:
             return False
         self.sampling.stop_at(t_end)
         if not worth_help(self.system, count):
@@ -303,6 +305,8 @@ class Simulation:
         self.flush()
         results = Result(self.model, self.numbering, self.system, self.state,
                          self.rows.all(), self.seconds, self.failure, self.start)
+        if self.plan.seconds:
+            results.all_seconds = self.plan.seconds + self.seconds
         results.warnings = (self.watch.judge(results) if results.steps else
                             tuple(self.watch.messages))
         return results
@@ -347,27 +351,31 @@ def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
     change with its phase, as those of a `Simulation` do, which does not know its end. A progress
     bar counts the two runs.
     """
-    if given(tolerance) is None:
-        run = Simulation(model, h, scheme, output_every, None, start, threads)
-        return run.run_to(t_end, progress).result()
-    return _planned_run(model, h, t_end, scheme, output_every, progress, tolerance, start, threads)
-
-
-def _planned_run(model, h, t_end, scheme, output_every, progress, tolerance, start, threads
-                 ) -> Result:
-    coarser = max(1.0, min(COARSER, COARSEST / max(tolerance.relative, 1e-300)))
     with showing(progress, t_end) as show:
+        run = planned_simulation(model, h, t_end, scheme, output_every, show, tolerance, start,
+                                 threads)
+        return run.run_to(t_end, show).result()
+
+
+def planned_simulation(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
+                       output_every: int = 1, progress: Callable[[float], None] | None = None,
+                       tolerance: Tolerance | None = None, start: Result | None = None,
+                       threads: int = 1) -> Simulation:
+    """The simulation that `simulate` runs to `t_end`: with a tolerance, its steps are planned.
+
+    If the run with a larger tolerance fails, errors choose the steps one by one.
+    """
+    plan = Plan()
+    if given(tolerance) is not None:
+        coarser = max(1.0, min(COARSER, COARSEST / max(tolerance.relative, 1e-300)))
+        local = Tolerance(*(coarser * value for value in tolerance))
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LimitWarning)
-            pilot = Simulation(model, h, scheme, output_every,
-                               Tolerance(*(coarser * value for value in tolerance)), start, threads,
-                               Plan(logged=LOGGED))
+            warnings.simplefilter("ignore", LimitWarning)       # what is wrong there need not stay
+            pilot = Simulation(model, h, scheme, 1, local, start, threads, Plan(logged=LOGGED))
             try:
-                pilot.run_to(t_end, show)
-                plan = Plan(planned(pilot.log.rows(), pilot.system.corners, coarser))
+                pilot.run_to(t_end, progress)
+                schedule = planned(pilot.log.rows(), pilot.system.corners, coarser)
+                plan = Plan(schedule, seconds=pilot.seconds)
             except SimulationError:
-                plan = Plan()
-        run = Simulation(model, h, scheme, output_every, tolerance, start, threads, plan)
-        result = run.run_to(t_end, show).result()
-    result.all_seconds = pilot.seconds + result.seconds
-    return result
+                plan = Plan(seconds=pilot.seconds)
+    return Simulation(model, h, scheme, output_every, tolerance, start, threads, plan)

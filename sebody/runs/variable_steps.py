@@ -14,12 +14,16 @@ FIRST_STEP = 1e-3       # of the output grid: first step if nothing is accelerat
 USUAL = 1e-3            # relative tolerance at which the output grid says how stiff friction sticks
 
 
-def natural_step(model: Mechanism, h: float, tolerance: Tolerance) -> float:
+def natural_step(model: Mechanism, h: float, tolerance: Tolerance, plan: Plan) -> float:
     """Length of the steps that bristles and teeth of gears are stiff for [time].
 
-    Under a force they give way by the square of it, so it falls with the tolerance as the number of
-    steps does: what they give way by then falls as the error of the run.
+    Under a force they give way by the square of it, and those that are far stiffer than steps
+    resolve break away again when they have just been caught. It falls with the tolerance as steps
+    do, so that what bristles give way by falls as the error of the run. Where runs divide a plan,
+    it is their usual step.
     """
+    if plan.stiff and len(plan.schedule):
+        return plan.usual
     return h * min(1.0, (tolerance.least(extent(model)) / USUAL)**(1.0 / 3.0))
 
 
