@@ -30,7 +30,7 @@ BISECTIONS = 30     # of the order that three runs show
 SECOND = 1.8, 2.3   # orders that are that of the scheme
 REGULAR = 1.3, 3.0  # orders of differences that fall regularly, but not with that order yet
 CAUTION = 0.5       # by which an order may become less
-SURE = 0.35         # share of the tolerance in which two runs are enough
+SURE = 0.1          # share of the tolerance in which two runs are enough
 HOPELESS = 0.5      # share of the last three differences that the next one must be below
 RESOLVED = 30.0     # divisor of planned steps up to which runs may be too coarse to converge
 

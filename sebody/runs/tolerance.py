@@ -63,7 +63,7 @@ class Tolerance(NamedTuple):
                              "below which shorter steps do not help")
 
     def least(self, extent: float) -> float:
-        """The smaller of the errors of positions, over the extent of a model, and rotations."""
+        """The smaller of the errors of positions, over the characteristic length, and rotations."""
         sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
         sized = sizes > 0.0
         return float((self.allowed(sizes, rotational)[sized] / sizes[sized]).min())

@@ -5,7 +5,7 @@ that gives the error the variable steps turned out to have: errors and times of 
 measured in the same run and interpolated. Errors are against a run with steps far shorter than all
 others.
 
-``--random [FIRST:LAST]``: claimed and true errors of sixty random models, with the steps of all
+``--random [NUMBER,...]``: claimed and true errors of sixty random models, with the steps of all
 runs. ``--pendulum``: planned steps beside fixed ones of the same number. ``--json`` prints rows.
 """
 
@@ -158,17 +158,18 @@ def swung(angle: float, tolerances, t_end: float = 20.0) -> Iterator[dict]:
                "energy over fixed": planned.energy_balance() / fixed.energy_balance()}
 
 
-def main() -> None:
+def main(argv: list[str] | None = None) -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--random", nargs="?", const=f"0:{random_motions.COUNT}")
+    parser.add_argument("--random", nargs="?", metavar="NUMBER,...",
+                        const=",".join(map(str, range(random_motions.COUNT))))
     parser.add_argument("--tolerance", type=float, default=1e-3)
     parser.add_argument("--pendulum", action="store_true")
     parser.add_argument("--json", action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_args(argv)
     if options.random:
-        first, last = map(int, options.random.split(":"))
-        show((promised(seed, options.tolerance) for seed in range(first, last)), options.json)
+        numbers = map(int, options.random.split(","))
+        show((promised(number, options.tolerance) for number in numbers), options.json)
     elif options.pendulum:
         show((row for angle in (2.0, 3.0) for row in swung(angle, 10.0**-np.arange(3.0, 9.0))),
              options.json)

@@ -195,7 +195,7 @@ def controlled(at: Place) -> Model:
     model.rigid_body("rotor", hub, at.mass, at.inertia(0.1, 0.1, 0.1))
     model.revolute(hub, axis, name="hinge")
     model.actuator("motor", joint="hinge")
-    stiff = at.mass * at.length**2 * at.rng.uniform(20.0, 60.0)
+    stiff = at.mass * at.length**2 * at.rng.uniform(5.0, 15.0)
     law = pid(stiff, kd=0.1 * stiff, filter=50.0, reference=at.rng.uniform(0.3, 1.0))
     period = () if at.seed % 2 else (at.time / 100,)
     model.controller("loop", law, ["hinge.angle"], ["motor"], *period)

@@ -78,7 +78,7 @@ RESTART = {
     "a plan of steps without length": Packed("has a plan of steps that no run has", text(
         "settings", lambda said: said["plan"].__setitem__(0, [[1.0, 0.0]]))),
     "a plan with a number too few": Packed("has a plan of steps that no run has", text(
-        "settings", lambda said: said["plan"].pop())),
+        "settings", lambda said: said["plan"].__delitem__(-1))),
     "another model": Packed("is of another model", text(
         "settings", lambda said: said.update({"model": "x"}))),
     "a model that is a number": Packed("has 3 for its model", text(
