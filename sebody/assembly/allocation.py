@@ -21,8 +21,8 @@ from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism
 
 
-def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
-             dense: bool) -> State:
+def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, dense: bool,
+             schedule: NDArray | None = None, logged: int = 0) -> State:
     """The state of a model at t = 0, without accelerations and multipliers.
 
     Parameters
@@ -31,6 +31,10 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         Step of the output grid [time].
     dense : bool
         Whether the loop keeps an inverse of the iteration matrix.
+    schedule : (k, 2) ndarray, optional
+        End and length of planned steps.
+    logged : int
+        Steps that `State.step_log` has room for.
     """
     counts = record_counts(numbering)
     n, total, ports = numbering.free, numbering.total, counts["ports"]
@@ -56,7 +60,9 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
         correction=zeros(whole_vectors(total) + LANES), solution=zeros(system.slot_unknowns.size),
         last_correction=zeros(total), last_change=zeros(total),
         moved=np.ones(len(system.summands), dtype=bool),
-        error_weights=zeros(total), expansion=zeros(_expansion_size(system)),
+        error_weights=zeros(total),
+        schedule=zeros((0, 2)) if schedule is None else schedule.copy(),
+        step_log=zeros((logged, 3)), expansion=zeros(_expansion_size(system)),
         matrix=zeros(system.rows.size + 1), scale=np.ones(total + LANES), weight=zeros(total),
         inverse=zeros((n, whole_vectors(n)) if dense else (1, 1)),
         spare=spare(system, n, dense),
@@ -78,7 +84,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float,
 def _counters(h: float) -> tuple[np.record, np.record]:
     """Clock and control of a run that has not begun, with this step of the output grid."""
     clock, control = record(CLOCK), record(CONTROL)
-    clock.step = clock.current_step = clock.aux_step = h
+    clock.step = clock.current_step = clock.aux_step = clock.natural = h
     clock.contraction = SLOWEST
     control.wanted = EVALUATED
     return clock, control

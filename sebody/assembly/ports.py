@@ -1,7 +1,7 @@
 """Power ports of a model: where loads, drives and dampers supply or take energy."""
 
 from collections.abc import Mapping
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -70,7 +70,7 @@ def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, 
     `inputs` are the places in `State.frames` of ports that are inputs.
     """
     jumping = {t for times in jumps for t in times}
-    corners = sorted(jumping.union(*(h.corners for h in time_functions)))
+    corners = sorted(jumping.union(*(_corners(h) for h in time_functions)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in time_functions)],
                                  dtype=np.int64),
             "table_times": np.array([t for h in time_functions for t in h.times], dtype=float),
@@ -82,6 +82,19 @@ def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, 
                 for port, h in enumerate(time_functions)], dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
             "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
+
+
+def _corners(one: TimeFunction) -> list[float]:
+    """Times at which variable steps end.
+
+    Between two corners of a function that is not known, such as the ends of a short pulse, steps
+    also end at three times, so that none steps over what happens there.
+    """
+    corners = list(one.corners)
+    if one.functions or one.is_time:
+        corners += [(1.0 - s) * a + s * b for a, b in pairwise(one.corners)
+                    for s in (0.25, 0.5, 0.75)]
+    return corners
 
 
 def _pieces(time_functions: list[TimeFunction]) -> NDArray:

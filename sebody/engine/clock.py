@@ -17,7 +17,12 @@ CLOCK = np.dtype([(name, np.float64) for name in (
     "acceleration_norm",     # largest norm of beta h^2 a so far, slowly forgotten
     "aux_step",              # step length that the auxiliary accelerations belong to
     "chosen",                # step length that the error allows (variable steps)
-    "largest_error",         # of a step with that length, slowly forgotten; 1 is allowed
+    "allowed",               # error of a step over its tolerance, above which it is repeated
+    "origin",                # time of the last event, before which errors tell nothing
+    "begun",                 # time at which the window of errors under way began
+    "rate",                  # largest error over h^3 in it
+    "rate_before",           # largest error over h^3 in the window before
+    "natural",               # length of steps that bristles and teeth are stiff for
     "target",                # norm below which a correction counts as converged
     "end",                   # time at the end of the step under way
     "beside",                # time from there at which its loads are read: before a jump, or 0
@@ -45,7 +50,8 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "back_off_left",         # of these, still to come
     "adaptive",              # 1 for variable steps
     "corner",                # next entry of System.corners
-    "held",                  # steps since the step length changed
+    "held",                  # steps since the step length changed; of a schedule 0 after a cut
+    "piece",                 # row of the schedule that the time reached is in
     "rejected",              # steps repeated because of their error
     "secant",                # 1 where the last correction belongs to this step and its matrix
     "regularized",               # 1 where the matrix is regularized

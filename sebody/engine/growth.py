@@ -24,7 +24,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY, KINETIC, POTENTIAL, STRAIN
 from sebody.engine.evaluate import run_kernels
 from sebody.engine.scalars import record
-from sebody.engine.step_control import AIM
+from sebody.engine.step_control import forget_errors
 from sebody.kernels.abi import pointer_to
 
 SHARE = 0.02            # of the largest strain energy
@@ -160,7 +160,7 @@ def _reject(state, balance, elsewhere):
         guard.rejections += 1.0
         guard.most_halved = max(guard.most_halved, halved)
     if control.adaptive == 1:
-        state.clock.largest_error = AIM        # as after an error: longer ones not soon
+        forget_errors(state.clock)
     return True
 
 

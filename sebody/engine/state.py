@@ -82,6 +82,9 @@ class State(Arrays):
     turns                 (3 N,) of coordinates in the plane that rotate arms of rigid links: an
                           angle, its cosine and sine, see `links.remember`
     error_weights         (N,) one over the error that is allowed of an unknown in a step
+    schedule              (k, 2) end and length of planned steps; none where errors choose them
+    step_log              (m, 3) end, length and error over h^3 of the last m steps, lengths without
+                          halvings where energy would grow; m is 0 in most runs
     --------------------  --------------------------------------------------------------------------
     power ports
     ------------------------------------------------------------------------------------------------
@@ -201,6 +204,8 @@ class State(Arrays):
     work: NDArray
     energy: NDArray
     error_weights: NDArray
+    schedule: NDArray
+    step_log: NDArray
     memory: NDArray
     guard: np.record
     clock: np.record

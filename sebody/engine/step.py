@@ -21,13 +21,14 @@ from sebody.engine.prediction import BEFORE, FITTED, LAST, look_back, ring_place
 from sebody.engine.state import (
     ASKED,
     BEGIN,
+    CONTACT,
     EVALUATED,
     FINEST,
     JUMP,
     KEPT,
     SAMPLED,
 )
-from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, go_on, set_end
+from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, forget_errors, go_on, set_end
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import at, pointer_to
 
@@ -231,6 +232,8 @@ def cut_step(state):
     if control.adaptive == 1:
         clock.chosen = 0.5 * clock.current_step
         control.held = 0
+        if control.reason == CONTACT:
+            forget_errors(clock)
         return clock.chosen > SHORTEST * clock.step
     tried = clock.current_step
     while clock.current_step >= tried and (1 << control.level) <= FINEST:

@@ -1,8 +1,14 @@
-"""Step lengths chosen by the local error, and output within a step, for compiled code.
+"""Step lengths chosen by the local error or planned, and output within a step, for compiled code.
 
 All steps are allowed the same error, which minimizes the sum of the errors for a given number of
 steps. Another step length needs a refactorization, which costs many iterations: the length changes
 only where much is gained.
+
+Steps that change at the same phase of every swing make energy drift, however small their errors. So
+steps that are chosen one by one follow the largest error in a window that grows with the run. It
+begins anew at events: corners of loads, impacts and errors far above the allowed one, which say
+nothing of the motion after them. Runs whose end is known plan their steps instead, see
+`sebody.runs.planning`.
 """
 
 import numpy as np
@@ -37,7 +43,13 @@ GAIN = 1.4              # smallest factor by which steps are lengthened
 LONGEST = 4.0           # largest factor by which steps are lengthened
 SHORT = 0.2             # smallest factor by which a rejected step is shortened
 PATIENCE = 10           # steps before the next lengthening, unless by the largest factor
-MEMORY = 0.99           # factor of the largest error, in every step
+SLOWLY = 35             # the same while steps are halved because energy grew
+WINDOW = 0.5            # of the time since the last event: what a window of errors lasts at least
+LEAST = 50.0            # steps that it lasts at least
+EVENT = 8.0             # error that is an event
+CALM = 1e-6             # largest error in a window that tells nothing: the next one begins
+SLIVER = 0.1            # of the chosen length: errors of shorter steps, at corners, are rounding
+REGROWN = 2.0           # factor from step to step after a planned one was cut
 FAR = 1e3               # steps before a corner from which on they are made to meet it
 NEAR = 1e-6             # of a step: nearer times are one
 BEFORE = 3.0            # times this: how far before a jump loads are read
@@ -46,44 +58,88 @@ SHORTEST = 1e-9         # shortest step, relative to an output interval
 
 @compiled
 def accurate(system, state, scheme):
-    """Whether the error of a step is allowed; chooses the length of the next attempt.
-
-    The local error of an increment is ``|beta + (alpha_m - alpha_f)/2 - 1/6| h^3`` times the rate
-    of the acceleration, estimated from the change of the auxiliary acceleration in the step.
-    """
+    """Whether the error of a step is allowed; chooses the length of the next attempt."""
     clock, control = state.clock, state.control
     h = clock.current_step
-    error = 0.0
+    error = _local_error(system, state, scheme)
+    least = max(h, SLIVER * clock.chosen)
+    rate = error / (least * least * least)
+    if not error <= clock.allowed:
+        if not error <= EVENT:
+            forget_errors(clock)
+        else:
+            clock.rate = max(clock.rate, rate)
+        clock.chosen = h * max(SHORT, (AIM / error) ** (1.0 / 3.0))
+        control.held = 0
+        control.rejected += 1
+        return False
+    rows = state.step_log.shape[0]
+    if rows > 0:
+        row = control.steps % rows
+        whole = h * 2.0 ** state.guard.halved       # a plan is halved anew where energy grows
+        state.step_log[row, 0], state.step_log[row, 1] = clock.end, whole
+        state.step_log[row, 2] = rate
+    if state.schedule.shape[0] > 0:
+        if control.held == 0:
+            clock.chosen = REGROWN * h
+    else:
+        _choose_by_window(state, rate)
+    return True
+
+
+@compiled
+def _local_error(system, state, scheme):
+    """Largest error of an increment over the allowed one.
+
+    It is ``|beta + (alpha_m - alpha_f)/2 - 1/6| h^3`` times the rate of the acceleration,
+    estimated from the change of the auxiliary acceleration in the step.
+    """
+    h, error = state.clock.current_step, 0.0
     aux, old = pointer_to(state.aux), pointer_to(state.aux_old)
     error_weights = pointer_to(state.error_weights)
     for i in range(system.diagonal.size):
         e = abs(aux[i] - old[i]) * error_weights[i]
         if e > error:
             error = e
-    error *= abs(scheme.beta + 0.5 * (scheme.alpha_m - scheme.alpha_f) - 1.0 / 6.0) * h * h
-    if not error <= 1.0:
-        clock.chosen = h * max(SHORT, (AIM / error) ** (1.0 / 3.0))
-        clock.largest_error = AIM
-        control.held = 0
-        control.rejected += 1
-        return False
-    same = h / clock.chosen            # the step is shorter than chosen before a corner
-    largest = max(error / max(same * same * same, 1e-3), MEMORY * clock.largest_error)
+    return error * abs(scheme.beta + 0.5 * (scheme.alpha_m - scheme.alpha_f) - 1.0 / 6.0) * h * h
+
+
+@compiled
+def _choose_by_window(state, rate):
+    """Lengthen steps if the largest error over h^3 of the window under way, and of the one before,
+    allows it.
+
+    Steps that were halved because energy grew are lengthened slowly.
+    """
+    clock, control, guard = state.clock, state.control, state.guard
     control.held += 1
-    gain = GAIN if control.held >= PATIENCE else LONGEST
-    if largest * gain * gain * gain <= AIM:
-        factor = min(LONGEST, (AIM / max(largest, 1e-300)) ** (1.0 / 3.0))
-        clock.chosen *= factor
-        largest *= factor * factor * factor
+    clock.rate = max(clock.rate, rate)
+    largest = max(clock.rate, clock.rate_before)
+    chosen = clock.chosen
+    if largest * chosen * chosen * chosen < CALM or clock.end - clock.begun > max(
+            WINDOW * (clock.end - clock.origin), LEAST * chosen):
+        clock.rate_before, clock.rate, clock.begun = clock.rate, rate, clock.end
+    wanted = (AIM / max(largest, 1e-300)) ** (1.0 / 3.0)
+    if guard.halved > 0.0:
+        wanted = min(wanted, GAIN * chosen) if control.held >= SLOWLY else 0.0
+    if wanted >= (GAIN if control.held >= PATIENCE else LONGEST) * chosen:
+        clock.chosen = min(wanted, LONGEST * chosen)
         control.held = 0
-    clock.largest_error = largest
-    return True
+
+
+@compiled
+def forget_errors(clock):
+    """Let the window of errors begin anew: what happens now need not come again."""
+    clock.origin = clock.begun = clock.time
+    clock.rate = clock.rate_before = 0.0
 
 
 @compiled
 def choose_step(system, state):
-    """Set the length of a step: as the error allows, but so that it meets corners of loads."""
+    """Set the length of a step: as the error allows or as planned, but so that it meets corners."""
     clock = state.clock
+    if state.schedule.shape[0] > 0:
+        _follow_schedule(state)
     last, h = clock.current_step, clock.chosen
     left = next_corner(system, state) - clock.time
     if state.memory[NEXT] >= 0.0:
@@ -93,6 +149,22 @@ def choose_step(system, state):
         if parts < FAR:         # equal steps share a matrix, so rounding must not change h
             h = last if abs(parts * last - left) < 1e-9 * left else left / parts
     clock.current_step = h
+
+
+@compiled
+def _follow_schedule(state):
+    """Take the planned length at the time reached; after a cut, lengths return to it by and by.
+
+    Steps stay halved while energy would grow otherwise.
+    """
+    clock, control = state.clock, state.control
+    reached = clock.time + NEAR * clock.chosen
+    while control.piece < state.schedule.shape[0] - 1 and (
+            state.schedule[control.piece, 0] <= reached):
+        control.piece += 1
+    planned = state.schedule[control.piece, 1] * 0.5 ** state.guard.halved
+    if control.held > 0 or clock.chosen >= planned:
+        clock.chosen, control.held = planned, 1
 
 
 @compiled
@@ -155,6 +227,8 @@ def go_on(state):
     clock.time = clock.end
     if control.meets != NOTHING:
         clock.aux_step = np.inf
+    if control.meets == BEND or control.meets == JUMP:      # samples come again and again
+        forget_errors(clock)
     if control.meets >= SAMPLED:
         control.restart = ASKED
 

@@ -277,6 +277,9 @@ class Result(Recording):
         if self.error is not None:
             lines.insert(2, f"error                {self.error:.2f} of the tolerance, estimated; "
                             f"{1e3 * self.all_seconds:.3g} ms including the coarser runs")
+        elif self.all_seconds:
+            lines.insert(2, "planned steps        by a run with a larger tolerance, "
+                            f"{1e3 * self.all_seconds:.3g} ms including it")
         if self.start and self.start.changed:
             lines.append("solved for           initial velocity of "
                          + ", ".join(f"{name} (by {change:.3g})"

@@ -1,10 +1,12 @@
-"""Runs within a tolerance of the whole run: steps are refined until two runs agree."""
+"""Runs within a tolerance of the whole run: steps are refined until runs agree."""
 
 import warnings
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody.assembly.numbering import placed, rotational
 from sebody.basics import inputs
@@ -13,18 +15,24 @@ from sebody.engine.state import Scheme
 from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.results.result import Result
+from sebody.runs.planning import LOGGED, Plan, planned
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance, given
 
-FIRST = 0.3         # local tolerance of the first run, relative to the tolerance of the run
-COARSE = 1e-3       # largest relative local tolerance of the first run
-REFINED = 3.0       # the second run takes so many times the steps of the first
-LEAST, MOST = 1.5, 6.0      # bounds of that factor for further runs
+FIRST = 0.3         # local tolerance of the run that plans, relative to the tolerance of the run
+COARSE = 1e-3       # largest relative local tolerance of that run
+REFINED = 1.6       # the second run divides the planned steps by this
+LEAST, MOST = 1.5, 2.5      # bounds of that factor from one further run to the next
 AIM = 0.5           # share of the tolerance that a further run aims at
-SLOWEST, QUICKEST = 0.25, 2.0       # orders at which errors may fall with the number of steps
-BISECTIONS = 20     # of the order that three runs show
-HOPELESS = 0.5      # two refinements must reduce the difference of runs by this factor
+SLOWEST, QUICKEST = 0.25, 4.0       # orders at which errors may fall with the number of steps
+BISECTIONS = 30     # of the order that three runs show
+SECOND = 1.8, 2.3   # orders that are that of the scheme
+REGULAR = 1.3, 3.0  # orders of differences that fall regularly, but not with that order yet
+CAUTION = 0.5       # by which an order may become less
+SURE = 0.1          # share of the tolerance in which two runs are enough
+HOPELESS = 0.5      # share of the last three differences that the next one must be below
+RESOLVED = 30.0     # divisor of planned steps up to which runs may be too coarse to converge
 
 
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
@@ -33,12 +41,13 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
                     start: Result | None = None, threads: int = 1) -> Result:
     """Run a model so that its error in time is within a tolerance; steps are chosen.
 
-    The run is repeated with a finer local tolerance until the difference of the last two runs shows
-    that the last one is good enough: errors fall with the square of the number of steps. Where
-    only that makes it good enough, and not a fall with the number itself, a third run in between
-    shows how they fall: vibrations that steps do not resolve converge slowly. Errors are root mean
-    squares over the run, of every position and rotation. The error of the model itself, from too
-    few modes or bodies, is not part of them.
+    A first run plans the steps; further ones divide the planned steps by larger and larger numbers,
+    until the differences of the last three show that the last one is good enough. All have the same
+    steps but for that number, so the differences tell the order at which errors fall. Where it is
+    that of the scheme, errors follow from it; where differences fall irregularly, as those of runs
+    with contacts do, two runs one after the other must be good enough. Errors are root mean squares
+    over the run, of every position and rotation. The error of the model itself, from too few modes
+    or bodies, is not part of them.
 
     Parameters
     ----------
@@ -74,36 +83,34 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
              threads: int) -> Result:
     """The run that is within the tolerance `wanted`, after coarser ones."""
     runs = _Runs(model, h, t_end, wanted, scheme, progress, start, threads)
-    coarse = min(FIRST, COARSE / max(wanted.relative, 1e-300))
-    before, share = runs.run(coarse), coarse / REFINED**3
-    differences: list[float] = []
+    runs.plan()
+    smooth = not any(load.tuned for load in model.loads)    # without friction and backlash
+    before, divisors, differences = runs.run(1.0), [1.0, REFINED], []
+    estimates: list[Estimate] = []
     while True:
-        now = runs.run(share)
+        now = runs.run(divisors[-1])
         differences.append(difference(now, before, wanted))
-        now.error, most = _falling(differences[-1], before, now, 2), MOST
-        if now.error <= 1.0 < (slowly := _falling(differences[-1], before, now, 1)):
-            between = runs.run(np.sqrt(share * coarse))
-            now.error, most = error_by_three(before, between, now, wanted), REFINED
-        elif now.error <= 1.0:
-            now.error = slowly
-        now.all_seconds = runs.seconds
-        if now.error <= 1.0:
+        estimates.append(estimated(divisors[-3:], differences[-2:], smooth))
+        last = estimates[-1]
+        now.error, now.all_seconds = last.error, runs.seconds
+        if _good_enough(estimates):
             for message in now.warnings:
                 warnings.warn(message, LimitWarning, stacklevel=3)
             return now
-        if len(differences) > 2 and differences[-1] > HOPELESS * differences[-3]:
+        if (divisors[-1] > RESOLVED and last.error > 1.0
+                and differences[-1] > HOPELESS * max(differences[-4:-1])):
             raise SimulationError(
                 "the error does not decrease with the step: it stays at "
                 f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. The motion may "
                 "be chaotic, so that only its beginning can be computed: use a larger tolerance "
                 "or an earlier end", now)
-        before, coarse = now, share
-        share /= min(max(np.sqrt(now.error / AIM), LEAST), most)**3
+        before = now
+        divisors.append(divisors[-1] * min(max(np.sqrt(last.error / AIM), LEAST), MOST))
 
 
 @dataclass
 class _Runs:
-    """Runs of a model with local tolerances that are shares of the wanted one."""
+    """Runs of a model whose steps are parts of planned ones."""
 
     model: Model
     h: float
@@ -113,18 +120,30 @@ class _Runs:
     progress: Callable[[float], None] | None
     start: Result | None
     threads: int
+    schedule: NDArray = field(default_factory=lambda: np.zeros((0, 2)))
     finest: Result | None = None
     seconds: float = 0.0
 
-    def run(self, share: float) -> Result:
-        """One run; what is wrong with a coarse one need not stay, so it does not warn."""
+    def plan(self) -> None:
+        """Make the run whose errors tell the steps of the others."""
+        pilot = self._one(Plan(logged=LOGGED))
+        self.schedule = planned(pilot.log.rows(), pilot.system.corners)
+
+    def run(self, divisor: float) -> Result:
+        """One run with the planned steps divided by a number."""
+        return self._one(Plan(self.schedule, divisor, np.inf, stiff=True)).result()
+
+    def _one(self, plan: Plan) -> Simulation:
+        """A run; what is wrong with a coarse one need not stay, so it does not warn."""
+        share = min(FIRST, COARSE / max(self.wanted.relative, 1e-300))
         local = Tolerance(*(share * value for value in self.wanted))
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LimitWarning)
                 one = Simulation(self.model, self.h, self.scheme, tolerance=local,
-                                 start=self.start, threads=self.threads)
-                result = one.run_to(self.t_end, self.progress).result()
+                                 start=self.start, threads=self.threads, plan=plan)
+                one.run_to(self.t_end, self.progress)
+                result = one.result()
         except KeyboardInterrupt as stop:
             if self.finest is None:
                 raise
@@ -135,28 +154,61 @@ class _Runs:
         self.seconds += result.seconds
         if self.finest is None or result.steps > self.finest.steps:
             self.finest = result
-        return result
+        return one
 
 
-def _falling(change: float, coarse: Result, fine: Result, order: int) -> float:
-    """Error of a run by its difference from a coarser one, if errors fall with that order."""
-    return change / max((fine.steps / coarse.steps)**order - 1.0, LEAST - 1.0)
+class Estimate(NamedTuple):
+    """Error of a run relative to the allowed one."""
+
+    error: float
+    most: float             # the same with caution
+    regular: bool = False   # differences of runs fall as those of errors of one order do
+    second: bool = False    # of the order of the scheme
 
 
-def error_by_three(coarse: Result, between: Result, fine: Result, allowed: Tolerance) -> float:
-    """Error of the last of three runs, relative to the allowed one, at the order they show.
+def estimated(divisors: Sequence[float], differences: Sequence[float], smooth: bool = True
+              ) -> Estimate:
+    """The error of the last of three runs, from differences of each run from the one before.
 
-    Errors ``c n^-p`` of runs with n steps have differences whose ratio tells p.
+    Errors ``c k^-p`` of runs with steps h/k have differences whose ratio tells p. Of two runs, of
+    differences that do not fall so, and of motions that are not smooth, because of friction, the
+    error is taken to fall with the number of steps, and to be no less than the last difference.
     """
-    first, last = difference(between, coarse, allowed), difference(fine, between, allowed)
-    steps = np.array([coarse.steps, between.steps, fine.steps]) / fine.steps
+    k, last = np.array(divisors) / divisors[-1], float(differences[-1])
+    cautious = max(_falling(last, k[-2], 1.0), last)
+    if len(differences) < 2 or not smooth:
+        return Estimate(cautious, cautious)
     low, high = SLOWEST, QUICKEST
     for _ in range(BISECTIONS):
         order = (low + high) / 2.0
-        errors = steps**-order
-        slower = first * (errors[1] - errors[2]) < last * (errors[0] - errors[1])
+        errors = k**-order
+        slower = differences[0] * (errors[1] - errors[2]) < last * (errors[0] - errors[1])
         low, high = (low, order) if slower else (order, high)
-    return float(last / max(steps[1]**-low - 1.0, 1e-3))
+    if not REGULAR[0] < low < REGULAR[1]:
+        return Estimate(cautious, cautious)
+    most = _falling(last, k[1], max(1.0, min(low, 2.0) - CAUTION))
+    if SECOND[0] < low < SECOND[1]:
+        return Estimate(_falling(last, k[1], 2.0), most, True, True)
+    return Estimate(most, most, True)
+
+
+def _falling(change: float, coarser: float, order: float) -> float:
+    """Error of a run by its difference from one with a smaller divisor, relative to its own."""
+    return float(change / (coarser**-order - 1.0))
+
+
+def _good_enough(estimates: Sequence[Estimate]) -> bool:
+    """Whether the last run is within the tolerance.
+
+    Three runs that are too coarse may fall with the order of the scheme by chance: that counts for
+    sure only with the run before them.
+    """
+    last = estimates[-1]
+    if len(estimates) < 2:
+        return last.error <= SURE
+    if not last.regular:
+        return max(one.error for one in estimates[-2:]) <= 1.0
+    return (last.error if last.second and estimates[-2].second else last.most) <= 1.0
 
 
 def difference(one: Result, other: Result, allowed: Tolerance) -> float:

@@ -21,13 +21,14 @@ from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import AHEAD, EVALUATED, FINEST, JUMP, REASONS, SOLVED, Scheme, State
 from sebody.model.model import Model
 from sebody.runs.fingerprint import fingerprint
+from sebody.runs.planning import Plan
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
-VERSION = 6
+VERSION = 7
 TARGET = "restart file", (".npz",)      # see `files.check_target`
-SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "model"}
+SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "plan", "model"}
 OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
@@ -57,6 +58,7 @@ def save_state(run: Simulation, path: str | Path) -> Path:
     arrays["rows"] = run.rows.all()
     settings = {"version": VERSION, "h": run.h, "every": run.every, "seconds": run.seconds,
                 "scheme": list(run.scheme), "tolerance": run.tolerance and list(run.tolerance),
+                "plan": [run.plan.schedule.tolist(), *run.plan[1:]],
                 "model": fingerprint(run), "checksums": checksums(arrays)}
     with replacing(path, TARGET[0]) as file:
         # stubs of NumPy take the arrays for its argument allow_pickle, too
@@ -115,20 +117,35 @@ def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
 def _begun(file: str, model: Model, settings: dict, threads: int) -> Simulation:
     """A simulation with the settings of a file, at its start."""
     inputs.instance(model, "model", Model, "give a sebody.Model")
-    for name, kind in (("scheme", list), ("model", str), ("tolerance", list | None)):
+    for name, kind in (("scheme", list), ("model", str), ("tolerance", list | None),
+                       ("plan", list)):
         if not isinstance(settings[name], kind):
             raise InputError(f"{file} has {inputs.shown(settings[name])} for its {name}: {REPEAT}")
     inputs.number(settings["seconds"], f"{file}: seconds", least=0, remedy=REPEAT)
     try:
         tolerance = settings["tolerance"] and Tolerance(*settings["tolerance"])
         run = Simulation(model, settings["h"], Scheme(*settings["scheme"]), settings["every"],
-                         tolerance, threads=threads)
+                         tolerance, threads=threads, plan=_plan(file, settings["plan"]))
     except TypeError as error:      # too many numbers of the scheme or the tolerance, or too few
         raise InputError(f"{file} has an unknown scheme {settings['scheme']} or tolerance "
                          f"{settings['tolerance']}: {REPEAT}") from error
     if settings["model"] != fingerprint(run):
         raise _other_model(file)
     return run
+
+
+def _plan(file: str, numbers: list) -> Plan:
+    """The plan of a file."""
+    try:
+        lengths, finer, allowed, logged, seconds, stiff = numbers
+        schedule = np.array(lengths, dtype=float).reshape(-1, 2)
+        plan = Plan(schedule, float(finer), float(allowed), int(logged), float(seconds),
+                    bool(stiff))
+        if (schedule > 0.0).all() and min(plan.finer, plan.allowed) > 0.0 <= min(plan[3:]):
+            return plan
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"{file} has a plan of steps that no run has: {REPEAT}")
 
 
 def _other_model(file: str) -> InputError:

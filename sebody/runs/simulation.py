@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -12,7 +13,7 @@ from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
 from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
-from sebody.basics.errors import InputError, Interrupted, SimulationError
+from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
@@ -30,6 +31,7 @@ from sebody.runs.helpers import TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
+from sebody.runs.planning import LOGGED, Plan, StepLog, planned
 from sebody.runs.progress import showing
 from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
@@ -40,12 +42,14 @@ from sebody.runs.start_remarks import start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
-from sebody.runs.variable_steps import FIRST_STEP, begin_steps
+from sebody.runs.variable_steps import FIRST_STEP, begin_steps, natural_step
 
 LOOK = 0.2              # seconds in the loop until it returns to Python, which sees Ctrl-C then
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
 FEW = 64                # most steps of a short piece of a run
+COARSER = 30.0          # tolerance of the run that plans steps, relative to that of the run
+COARSEST = 1e-2         # largest relative tolerance of that run, unless the run's own is larger
 
 
 class Simulation:
@@ -71,9 +75,14 @@ class Simulation:
         Threads that share the steps of a large model, at most as many as there are free cores.
         Results are the same for any number of them, bit for bit. Models with less than 1000
         unknowns are too small to share: a warning says so.
+    plan : Plan, optional
+        Of the steps of a run with a tolerance, from one over the same time: see `simulate`. By
+        default they are chosen one by one, by their errors.
 
     Attributes
     ----------
+    log : StepLog
+        Steps of a run whose plan says to log them.
     begun : Result or None
         The state that was given to start from.
     start : Start
@@ -93,7 +102,7 @@ class Simulation:
 
     def __init__(self, model: Model, h: float, scheme: Scheme | None = None,
                  output_every: int = 1, tolerance: Tolerance | None = None,
-                 start: Result | None = None, threads: int = 1):
+                 start: Result | None = None, threads: int = 1, plan: Plan | None = None):
         self.model = inputs.instance(model, "model", Model, "give a sebody.Model")
         self.h = inputs.number(h, "the time step", above=0)
         self.every = inputs.integer(output_every, "output_every", least=1, most=int(MOST_STEPS),
@@ -108,7 +117,9 @@ class Simulation:
         self.system, self.numbering = build(model, threads, self.grid)
         self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None)
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
-        self.state = allocate(model, self.system, self.numbering, self.h, self.dense)
+        self.plan, self.log = plan or Plan(), StepLog()
+        self.state = allocate(model, self.system, self.numbering, self.h, self.dense,
+                              self.plan.steps, self.plan.logged)
         self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
@@ -129,6 +140,8 @@ class Simulation:
     def _begin(self) -> None:
         """Find the initial state: velocities, accelerations, what sticks, the first step."""
         model, numbering, state = self.model, self.numbering, self.state
+        if self.tolerance is not None:
+            state.clock.natural = natural_step(model, self.h, self.tolerance, self.plan)
         if self.begun is not None:
             take(model, numbering, state, self.begun)
         self.start: Start = begin(model, self.system, numbering, state)
@@ -139,7 +152,7 @@ class Simulation:
         self._accelerate()
         self.held = hold(model, self.system, numbering, state, self._accelerate_again)
         if self.tolerance is not None and not begin_steps(
-                model, self.system, numbering, state, self.h, self.tolerance):
+                model, self.system, numbering, state, self.h, self.tolerance, self.plan):
             self.watch.say("unsized", UNSIZED)
         self.sampling.check(self.h, self.tolerance is None)
         if self.sampling.begin():
@@ -265,7 +278,9 @@ class Simulation:
         count = last - control["grid"]
         if not 0 < count <= FEW or abs(steps - last) > OFF_GRID:
             return False
-        if self.sampling.needs_looks or (buffer := self.rows.buffer(count + 1)) is None:
+        if self.sampling.needs_looks or self.plan.logged:
+            return False
+        if (buffer := self.rows.buffer(count + 1)) is None:
             return False
         self.sampling.stop_at(t_end)
         if not worth_help(self.system, count):
@@ -289,11 +304,15 @@ class Simulation:
             self.exchanges.serve()
             self.sampling.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
+            if self.plan.logged:
+                self.log.take(self.state)
             now = time.perf_counter()
             self.seconds += now - began
             waited = max(now - looked, 1e-9)
             if code in (CHUNK, DONE):
                 chunk = max(1, int(chunk * min(GROWTH, LOOK / waited)))
+                if self.plan.logged:
+                    chunk = min(chunk, self.plan.logged - 1)
                 if progress:
                     progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
                 looked = time.perf_counter()
@@ -306,6 +325,8 @@ class Simulation:
         self.flush()
         results = Result(self.model, self.numbering, self.system, self.state,
                          self.rows.all(), self.seconds, self.failure, self.start)
+        if self.plan.seconds:
+            results.all_seconds = self.plan.seconds + self.seconds
         results.warnings = (self.watch.judge(results) if results.steps else
                             tuple(self.watch.messages))
         return results
@@ -349,6 +370,38 @@ def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
              tolerance: Tolerance | None = None, start: Result | None = None,
              threads: int = 1) -> Result:
-    """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions."""
-    run = Simulation(model, h, scheme, output_every, tolerance, start, threads)
-    return run.run_to(t_end, progress).result()
+    """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions.
+
+    With a tolerance, steps are planned for the whole run by a coarser one that comes first, so that
+    they change as little as its errors allow: the energy of conservative motion drifts where steps
+    change with its phase, as those of a `Simulation` do, which does not know its end. A progress
+    bar counts the two runs.
+    """
+    with showing(progress, t_end) as show:
+        run = planned_simulation(model, h, t_end, scheme, output_every, show, tolerance, start,
+                                 threads)
+        return run.run_to(t_end, show).result()
+
+
+def planned_simulation(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
+                       output_every: int = 1, progress: Callable[[float], None] | None = None,
+                       tolerance: Tolerance | None = None, start: Result | None = None,
+                       threads: int = 1) -> Simulation:
+    """The simulation that `simulate` runs to `t_end`: with a tolerance, its steps are planned.
+
+    If the run with a larger tolerance fails, errors choose the steps one by one.
+    """
+    plan = Plan()
+    if given(tolerance) is not None:
+        coarser = max(1.0, min(COARSER, COARSEST / max(tolerance.relative, 1e-300)))
+        local = Tolerance(*(coarser * value for value in tolerance))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LimitWarning)       # what is wrong there need not stay
+            pilot = Simulation(model, h, scheme, 1, local, start, threads, Plan(logged=LOGGED))
+            try:
+                pilot.run_to(t_end, progress)
+                schedule = planned(pilot.log.rows(), pilot.system.corners, coarser)
+                plan = Plan(schedule, seconds=pilot.seconds)
+            except SimulationError:
+                plan = Plan(seconds=pilot.seconds)
+    return Simulation(model, h, scheme, output_every, tolerance, start, threads, plan)

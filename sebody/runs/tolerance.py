@@ -56,12 +56,17 @@ class Tolerance(NamedTuple):
         InputError
             Positions or rotations are allowed less than `FINEST`.
         """
-        sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
-        least = (self.allowed(sizes, rotational) / sizes)[sizes > 0.0].min()
+        least = self.least(extent)
         if least < FINEST:
             raise InputError(f"the tolerance allows errors of {least:.3g}, relative to the model's "
                              f"characteristic length or in radians: give at least {FINEST:g}, "
                              "below which shorter steps do not help")
+
+    def least(self, extent: float) -> float:
+        """The smaller of the errors of positions, over the characteristic length, and rotations."""
+        sizes, rotational = np.array([extent, 1.0]), np.array([False, True])
+        sized = sizes > 0.0
+        return float((self.allowed(sizes, rotational)[sized] / sizes[sized]).min())
 
     def allowed(self, magnitude: ArrayLike, rotational: ArrayLike) -> NDArray:
         """Allowed error of positions and rotations of a magnitude.

@@ -56,7 +56,7 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
         constants = ElementConstants(load, system, numbering)
         rows = directions(load, numbering, state)
         mass = 1.0 / _mobility(rows, solve, system, state, numbering.free)
-        natural = mass / state.clock.step**2
+        natural = mass / state.clock.natural**2
         if "teeth" in load.tuned:
             constants["stiffness"] = RESOLVED**2 * natural
             continue

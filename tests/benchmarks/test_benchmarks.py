@@ -90,6 +90,22 @@ def test_variable_steps_are_compared_with_the_best_fixed_step():
     assert error < 2.0 and steps > 0 and spent > 0.0 and best > 0.0
 
 
+def test_errors_of_random_models_are_claimed_truly(monkeypatch, capsys):
+    bench = imported("bench_accuracy")
+    monkeypatch.setattr(bench, "LAST", 512)
+    # a rod between ball joints, a hinge that sticks and slides
+    bench.main(["--random", "16,33", "--json"])
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert [row["kind"] for row in rows] == ["light_rod", "dry_hinge"]
+    assert all(row["true"] <= 1.0 and row["claimed"] > 0.3 * row["true"] for row in rows)
+    assert all(row["reference"] < 0.1 and row["steps"] < row["all steps"] for row in rows)
+
+
+def test_planned_steps_are_compared_with_fixed_ones():
+    row, = imported("bench_accuracy").swung(2.0, [1e-4], t_end=5.0)
+    assert row["over fixed"] < 1.1 and row["energy over fixed"] < 1.1
+
+
 def test_orders_of_creation_are_compared(monkeypatch, capsys):
     bench = imported("bench_order")
     monkeypatch.setattr(bench, "GRAPHS", {"tree": (bench.tree, 30)})

@@ -18,6 +18,7 @@ from sebody.engine.state import (
 )
 from sebody.runs import simulation
 from sebody.runs.accuracy import difference, simulate_within
+from sebody.runs.planning import LOGGED, Plan
 from sebody.runs.tolerance import Tolerance
 from sebody.scenes import (
     heavy_top,
@@ -147,13 +148,33 @@ def test_work_and_energy_between_steps():
     assert len(result.t) == 1001 and result.steps < 1001 * 2
 
 
-def test_an_impulse_shortens_the_steps():
-    run = Simulation(spherical_beam_strong.build(modes=0).model, 0.05, tolerance=Tolerance(1e-3))
-    run.run_to(14.9)
-    calm = run.state.clock.chosen
-    run.run_to(15.2)
-    assert run.state.clock.chosen < 0.5 * calm
-    assert run.state.control.rejected > 0
+def logged(model, grid, t_end, tolerance):
+    """Ends and lengths of steps that their errors choose one by one."""
+    run = Simulation(model, grid, tolerance=Tolerance(tolerance), plan=Plan(logged=LOGGED))
+    return run.run_to(t_end).log.rows().T[:2]
+
+
+def test_a_function_between_corners_shortens_the_steps():
+    """Half a sine in a single step of 0.1 would be no force at all."""
+    ends, lengths = logged(spherical_beam_strong.build(modes=0).model, 0.05, 15.2, 1e-3)
+    calm = lengths[ends < 14.9][-1]
+    assert calm > 0.1
+    assert lengths[(ends > 15.0) & (ends < 15.1)].max() < 0.5 * calm
+
+
+def test_steps_shrink_in_an_impulse_and_grow_at_once_after_it():
+    """The errors of an event say nothing of the motion after it."""
+    model = Model(planar=True)
+    model.rigid_body("body", model.node("centre", (1.0, 0.3)), 2.0, 0.7)
+    wall = model.node("wall", (0.0, 0.0), keeps="translation")
+    model.fix(wall, "position")
+    model.spring("centre", wall, 8.0)
+    model.initial_velocity("centre", (0.4, 0.2))
+    model.force("centre", (0.0, 1.0), [(5.0, 0.0), (5.003, 200.0), (5.01, 0.0)])
+    ends, lengths = logged(model, 0.1, 8.0, 1e-4)
+    calm = lengths[ends < 5.0 - lengths.max()].max()
+    assert lengths[(ends > 5.0) & (ends < 5.02)].min() < 0.2 * calm
+    assert lengths[ends > 5.0101][:12].max() > 0.5 * calm
 
 
 @pytest.mark.parametrize("width", [1e-4, 0.02])

@@ -49,8 +49,8 @@ RESTART = {
     "settings of brackets": Packed("brackets are nested deeper than 100", raw(
         "settings", "[" * 300_000)),
     "settings that are a list": Packed("is damaged or no restart file", raw("settings", "[]")),
-    "another version": Packed("is of version 7, this program reads 6", text(
-        "settings", lambda said: said.update({"version": 7}))),
+    "another version": Packed("is of version 8, this program reads 7", text(
+        "settings", lambda said: said.update({"version": 8}))),
     "a negative step at the start": Packed("the time step is -0.05", text(
         "settings", lambda said: said.update({"h": -0.05}))),
     "a step in words": Packed("the time step is 'short'", text(
@@ -73,6 +73,12 @@ RESTART = {
         "settings", lambda said: said.update({"tolerance": "fine"}))),
     "a tolerance that is negative": Packed("tolerance relative is -1", text(
         "settings", lambda said: said.update({"tolerance": [-1, 0, 0]}))),
+    "a plan in words": Packed("has 'none' for its plan", text(
+        "settings", lambda said: said.update({"plan": "none"}))),
+    "a plan of steps without length": Packed("has a plan of steps that no run has", text(
+        "settings", lambda said: said["plan"].__setitem__(0, [[1.0, 0.0]]))),
+    "a plan with a number too few": Packed("has a plan of steps that no run has", text(
+        "settings", lambda said: said["plan"].__delitem__(-1))),
     "another model": Packed("is of another model", text(
         "settings", lambda said: said.update({"model": "x"}))),
     "a model that is a number": Packed("has 3 for its model", text(

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, simulate
+from sebody import Model, Simulation, simulate
 from sebody.model.extent import extent
-from sebody.runs.accuracy import difference, simulate_within
+from sebody.runs.accuracy import difference, estimated, simulate_within
 from sebody.runs.tolerance import Tolerance
+from sebody.scenes import stick_slip
 
 
 @pytest.mark.parametrize("allowed", [1e-3, 1e-4])
@@ -74,3 +75,60 @@ def test_difference_of_rotations_is_their_angle():
     allowed = Tolerance(1e-3, 1.0, 2e-3)
     assert difference(one, other, allowed) == pytest.approx(expected, rel=1e-6)
     assert difference(one, one, allowed) == 0.0
+
+
+@pytest.mark.parametrize("order", [1.6, 2.0, 2.6])
+def test_the_order_is_that_of_three_runs(order):
+    """Errors ``c k^-p``: those of second order are told, others are not told too small."""
+    divisors = np.array([1.0, 1.6, 3.2])
+    errors = 5.0 * divisors**-order
+    found = estimated(divisors, errors[:-1] - errors[1:])
+    assert found.regular and found.second == (order == 2.0)
+    assert found.most >= errors[-1]
+    assert found.error == pytest.approx(errors[-1], rel=1e-6 if order == 2.0 else 2.0)
+
+
+@pytest.mark.parametrize("differences", [(3.0, 2.9), (1.0, 2.0), (30.0, 0.1)])
+def test_irregular_differences_are_no_order(differences):
+    """The error then is no less than the last difference."""
+    found = estimated((1.0, 1.6, 2.4), differences)
+    assert not found.regular and found.error >= differences[-1]
+
+
+def test_friction_is_never_told_by_an_order():
+    """Where it breaks away the step decides, whatever three runs show."""
+    smooth, dry = (estimated((1.0, 2.0, 4.0), (3.0, 0.75), smooth) for smooth in (True, False))
+    assert smooth.error == pytest.approx(0.25) and dry.error == 0.75 and not dry.regular
+
+
+def belt(grid, tolerance):
+    """A block on a belt (`stick_slip`): its place and the closed form of it."""
+    result = simulate_within(stick_slip.build().model, grid, 2.0, Tolerance(tolerance))
+    t, x = result.t, np.empty(len(result.t))
+    rides = t < 0.4
+    x[rides] = 0.1 * t[rides]
+    # break-away at 4 N, sliding at 3 N: 0.03 m of the spring, and 10 rad/s
+    since = np.mod(t[~rides] - 0.4, 0.15 * np.pi + 0.2)
+    slides = since < 0.15 * np.pi
+    x[~rides] = np.where(slides, 0.03 + 0.01 * (np.cos(10 * since) + np.sin(10 * since)),
+                         0.02 + 0.1 * (since - 0.15 * np.pi))
+    return result, result["block.position"][:, 0], x
+
+
+@pytest.mark.parametrize("grid", [0.02, 0.002])
+def test_friction_converges_on_any_output_grid(grid):
+    """What bristles give way by falls with the steps, so the difference of runs sees it."""
+    for tolerance in (1e-3, 1e-4):
+        result, x, exact = belt(grid, tolerance)
+        allowed = tolerance * extent(result.model)
+        assert np.sqrt(np.mean((x - exact)**2)) <= allowed
+
+
+def test_bristles_stiffen_with_the_tolerance():
+    """At 0.35 s the block still rides, 3.5 N bend its bristle; the grid is the same."""
+    bent = []
+    for tolerance in (1e-3, 1e-6, 1e-9):
+        run = Simulation(stick_slip.build().model, 0.01, tolerance=Tolerance(tolerance))
+        bent.append(0.035 - run.run_to(0.35).result()["block.position"][-1, 0])
+    assert bent[0] == pytest.approx(3.5e-4, rel=0.1)        # m/h^2 with the grid of 0.01
+    assert bent[1:] == pytest.approx([3.5e-6, 3.5e-8], rel=0.1)

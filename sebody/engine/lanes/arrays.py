@@ -24,9 +24,10 @@ OWN_GROUPS = {"control"}        # of a system: read by single runs of the member
 SAMPLED = {"periods", "offsets"}        # and what of it is the same for all
 # scalars of all members together; the other ones of the records are lanes
 TIMES = {"time", "step", "current_step", "factor_step", "aux_step", "chosen", "end", "beside",
-         "largest_error"}
+         "allowed", "origin", "begun", "rate", "rate_before", "natural"}
 WHOLE = {"phase", "grid", "unit", "level", "recorded", "pivoted", "adaptive", "corner",
-         "meets", "split", "inside", "restart", "due", "held", "regularized", "cuts", "rejected"}
+         "meets", "split", "inside", "restart", "due", "held", "piece", "regularized", "cuts",
+         "rejected"}
 _ALIGNED = 64       # bytes of a vector
 
 Group = TypeVar("Group", bound=Arrays)

@@ -16,13 +16,16 @@ from sebody.model.model import Model
 from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.limits.watch import Watch
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import planned_simulation
 from sebody.runs.statics import equilibrium
 from sebody.runs.tolerance import Tolerance
 
 
 class Run(NamedTuple):
-    """A run: its quantities on its grid, the grid's step, its time and Newton iterations."""
+    """A run: its quantities on its grid, the grid's step, its time and Newton iterations.
+
+    Time and iterations include those of the run that plans variable steps.
+    """
 
     values: Values
     h: float
@@ -90,11 +93,14 @@ class Runs:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)       # advice tells them
             start = equilibrium(model) if self.balanced else None
-            simulation = Simulation(model, step.h, output_every=every, tolerance=tolerance,
-                                    start=start)
+            simulation = planned_simulation(model, step.h, end, None, every, self.progress,
+                                            tolerance, start)
             if not watched:
                 simulation.watch = _Unwatched()
             result = simulation.run_to(end, self.progress).result()
         h = step.h * every
-        return Run(self.quantities.of(result, h, self.h, frequencies), h, result.seconds,
-                   result.iterations_per_step * result.steps, result)
+        seconds = result.all_seconds or result.seconds
+        iterations = result.iterations_per_step * result.steps * seconds / max(result.seconds,
+                                                                               1e-12)
+        return Run(self.quantities.of(result, h, self.h, frequencies), h, seconds, iterations,
+                   result)

@@ -10,7 +10,16 @@ from collections.abc import Callable, Iterable
 from sebody.basics.errors import InputError, LimitWarning
 from sebody.contract.names import element_name, superelement_name
 from sebody.runs.first_run import PARTS, compile_missing
-from sebody.verify.atlas import frames, geometry, inertia, integration, spin, torsion, trust
+from sebody.verify.atlas import (
+    frames,
+    geometry,
+    inertia,
+    integration,
+    spin,
+    steps,
+    torsion,
+    trust,
+)
 from sebody.verify.atlas.draw import draw
 from sebody.verify.atlas.finding import Finding, Row
 
@@ -26,6 +35,7 @@ CASES: dict[str, Callable[[], Finding]] = {
     "damping": integration.damping_of_constraints,
     "newton": integration.newton,
     "million-steps": integration.million_steps,
+    "following-steps": steps.following,
     "struck-frame": frames.struck_frame,
     "half-turn": geometry.half_turn,
     "collinear": geometry.collinear,

@@ -27,7 +27,7 @@ from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.runs.first_run import prepare
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Simulation, planned_simulation
 from sebody.runs.tolerance import Tolerance
 from sebody.verify.bench import peer
 from sebody.verify.chart.advised import FAMILY, Advised, advised
@@ -158,7 +158,8 @@ class _Chart:
     def simulation(self, model: Model, step: Step, scheme: Scheme | None) -> Simulation:
         """A run that begins, recorded on the chart's grid."""
         tolerance = None if step.local is None else Tolerance(step.local)
-        return Simulation(model, step.h, scheme, round(self.grid * self.h / step.h), tolerance)
+        return planned_simulation(model, step.h, self.t_end, scheme,
+                                  round(self.grid * self.h / step.h), tolerance=tolerance)
 
     def _simulated(self, model: Model, step: Step, scheme: Scheme | None) -> Result:
         return self.simulation(model, step, scheme).run_to(self.t_end).result()
