@@ -8,10 +8,11 @@ from sebody.assembly.batches import Batches, make_batches, starts
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
+from sebody.assembly.grounded import check_grounded
 from sebody.assembly.independent_parts import FEWEST
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
-from sebody.assembly.ports import port_arrays
+from sebody.assembly.ports import port_arrays, series_arrays
 from sebody.assembly.structure import Structure, indices
 from sebody.basics.errors import InputError
 from sebody.contract.counts import LANES, scratch_size
@@ -41,6 +42,7 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     check_joints(model)
+    check_grounded(model)
     numbering = number(model)
     if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
@@ -48,12 +50,13 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
     ports = port_arrays(numbering.time_functions, numbering.prescribed, numbering.jumps,
-                        numbering.memory.inputs)
+                        numbering.memory.inputs, numbering.series)
     slots = own.system["slot_unknowns"].size
     system = System(
         shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
                          LANES * slots, int(own.system["width"].max()) ** 2),
-        **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
+        **own.system, **ports, **series_arrays(numbering.series, numbering.ports),
+        links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
