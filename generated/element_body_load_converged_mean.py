@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import inverse_3
+from sebody.kernels.dense import columns_times, inverse_3
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.rotations import inverse_tangent_coefficients
 
@@ -34,6 +34,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -42,9 +44,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 9
-OPERATIONS = {"residual": (200, 21, 96, 0),
-              "column": (15, 9, 134, 0)}
+WORK_ROWS = 10
+OPERATIONS = {"residual": (200, 24, 99, 0),
+              "column": (15, 9, 137, 0)}
 
 
 @kernel_function
@@ -58,27 +60,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     row = padded(max(n, 9*N_ROTATIONS))
     qe = work
     ve = at(work, row)
-    y = at(work, 2*row)
-    e0s = at(work, 3*row)
-    e1s = at(work, 4*row)
-    Q = at(work, 5*row)
-    h = at(work, 6*row)
-    dqe = at(work, 7*row)
-    dg = at(work, 8*row)
+    L = at(work, 2*row)
+    y = at(work, 3*row)
+    e0s = at(work, 4*row)
+    e1s = at(work, 5*row)
+    Q = at(work, 6*row)
+    h = at(work, 7*row)
+    dqe = at(work, 8*row)
+    dg = at(work, 9*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 3*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
+        # load by the columns of a series
+        columns_times(columns, amplitudes, L, n, series)
         # rotation of the frame: sum alpha_j psi_j = 0
         status = converged_mean(N_ROTATIONS, nodes, alpha_rs, R, frame, at(y, ROTATIONS))
         if status != 0:
@@ -110,9 +118,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             amplitude = loads[3*index[first + AT_PORT]]
             P_position_x, P_position_y, P_position_z = P[i3], P[i3 + 1], P[i3 + 2]
-            h[i3] = -P_position_x*amplitude
-            h[i3 + 1] = -P_position_y*amplitude
-            h[i3 + 2] = -P_position_z*amplitude
+            L_position_x, L_position_y, L_position_z = L[i3], L[i3 + 1], L[i3 + 2]
+            h[i3] = -L_position_x - P_position_x*amplitude
+            h[i3 + 1] = -L_position_y - P_position_y*amplitude
+            h[i3 + 2] = -L_position_z - P_position_z*amplitude
         # force on the nodes
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -125,16 +134,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+            L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
             Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                 Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
-            g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
-            g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
-            g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
+            t0 = L_rotation_x + P_rotation_x*amplitude
+            t1 = L_rotation_y + P_rotation_y*amplitude
+            t2 = L_rotation_z + P_rotation_z*amplitude
+            g[j3] = -Q_xx*t0 - Q_yx*t1 - Q_zx*t2
+            g[j3 + 1] = -Q_xy*t0 - Q_yy*t1 - Q_zy*t2
+            g[j3 + 2] = -Q_xz*t0 - Q_yz*t1 - Q_zz*t2
         # force on the modes
         for k in range(MODES, n):
             amplitude = loads[3*index[first + AT_PORT]]
             P_mode = P[k]
-            g[k] = -P_mode*amplitude
+            L_mode = L[k]
+            g[k] = -L_mode - P_mode*amplitude
         if task == ENERGY:
             power = 0.0
             for i in range(n):
@@ -150,25 +164,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t0 = e0*psi_y*psi_y
-                t1 = e0*psi_z*psi_z - 1
-                t2 = (0.5)*psi_z
-                t3 = e0*psi_x
-                t4 = psi_y*t3
-                t5 = (0.5)*psi_y
-                t6 = psi_z*t3
-                t7 = e0*psi_x*psi_x
-                t8 = (0.5)*psi_x
-                t9 = e0*psi_y*psi_z
-                B_00 += alpha_r*(-t0 - t1)
-                B_01 += alpha_r*(t2 + t4)
-                B_02 += alpha_r*(-t5 + t6)
-                B_10 += alpha_r*(-t2 + t4)
-                B_11 += alpha_r*(-t1 - t7)
-                B_12 += alpha_r*(t8 + t9)
-                B_20 += alpha_r*(t5 + t6)
-                B_21 += alpha_r*(-t8 + t9)
-                B_22 += alpha_r*(-t0 - t7 + 1)
+                t3 = e0*psi_y*psi_y
+                t4 = e0*psi_z*psi_z - 1
+                t5 = (0.5)*psi_z
+                t6 = e0*psi_x
+                t7 = psi_y*t6
+                t8 = (0.5)*psi_y
+                t9 = psi_z*t6
+                t10 = e0*psi_x*psi_x
+                t11 = (0.5)*psi_x
+                t12 = e0*psi_y*psi_z
+                B_00 += alpha_r*(-t3 - t4)
+                B_01 += alpha_r*(t5 + t7)
+                B_02 += alpha_r*(-t8 + t9)
+                B_10 += alpha_r*(-t5 + t7)
+                B_11 += alpha_r*(-t10 - t4)
+                B_12 += alpha_r*(t11 + t12)
+                B_20 += alpha_r*(t8 + t9)
+                B_21 += alpha_r*(-t11 + t12)
+                B_22 += alpha_r*(-t10 - t3 + 1)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             for column in range(n):
@@ -190,16 +204,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t10 = -dth_x*psi_y + dth_y*psi_x
-                    t11 = dth_x*psi_z
-                    t12 = -dth_z*psi_x + t11
-                    t13 = -dth_y*psi_z + dth_z*psi_y
+                    t13 = -dth_x*psi_y + dth_y*psi_x
+                    t14 = dth_x*psi_z
+                    t15 = -dth_z*psi_x + t14
+                    t16 = -dth_y*psi_z + dth_z*psi_y
                     rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y -
-                        e0*psi_y*t10 + e0*psi_z*t12))
-                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t10 - e0*psi_z*t13 -
-                        0.5*t11))
-                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t12
-                        + e0*psi_y*t13))
+                        e0*psi_y*t13 + e0*psi_z*t15))
+                    rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t13 - e0*psi_z*t16 -
+                        0.5*t14))
+                    rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t15
+                        + e0*psi_y*t16))
                 dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -216,21 +230,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     amplitude = loads[3*index[first + AT_PORT]]
                     P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                    L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                     Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                         Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                         Q[9*j + 8])
-                    dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                        Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
-                        Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                        Q_zz*dth_y)))
-                    dg[j3 + 1] = (-amplitude*(P_rotation_x*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z
-                        - Q_zy*dth0_y) + P_rotation_y*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + P_rotation_z*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z +
-                        Q_zz*dth_x)))
-                    dg[j3 + 2] = (-amplitude*(P_rotation_x*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z
-                        - Q_zz*dth0_y) + P_rotation_y*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x +
-                        Q_zz*dth0_x) + P_rotation_z*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                        Q_zy*dth_x)))
+                    t17 = L_rotation_x + P_rotation_x*amplitude
+                    t18 = L_rotation_y + P_rotation_y*amplitude
+                    t19 = L_rotation_z + P_rotation_z*amplitude
+                    dg[j3] = (-t17*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) -
+                        t18*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) -
+                        t19*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y))
+                    dg[j3 + 1] = (-t17*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) -
+                        t18*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) -
+                        t19*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x))
+                    dg[j3 + 2] = (-t17*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) -
+                        t18*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) -
+                        t19*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x))
                 # differential: force on the modes
                 for k in range(MODES, n):
                     dg[k] = 0.0

@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import inverse_3
+from sebody.kernels.dense import columns_times, inverse_3
 from sebody.kernels.frame_search import mean_axes
 from sebody.kernels.rotations import inverse_tangent_coefficients
 
@@ -35,6 +35,8 @@ N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -43,9 +45,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 9
-OPERATIONS = {"residual": (600, 21, 96, 0),
-              "column": (15, 33, 141, 0)}
+WORK_ROWS = 10
+OPERATIONS = {"residual": (600, 24, 99, 0),
+              "column": (15, 33, 144, 0)}
 
 
 @kernel_function
@@ -59,28 +61,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     row = padded(max(n, 9*N_ROTATIONS))
     qe = work
     ve = at(work, row)
-    y = at(work, 2*row)
-    e0s = at(work, 3*row)
-    e1s = at(work, 4*row)
-    Q = at(work, 5*row)
-    h = at(work, 6*row)
-    dqe = at(work, 7*row)
-    dg = at(work, 8*row)
+    L = at(work, 2*row)
+    y = at(work, 3*row)
+    e0s = at(work, 4*row)
+    e1s = at(work, 5*row)
+    Q = at(work, 6*row)
+    h = at(work, 7*row)
+    dqe = at(work, 8*row)
+    dg = at(work, 9*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         Gam = at(X, 3*N_POSITIONS)
         P = at(Gam, 3*n)
+        columns = at(P, n)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
+        # load by the columns of a series
+        columns_times(columns, amplitudes, L, n, series)
         # rotation of the frame: mean axes
         status = mean_axes(N_POSITIONS, N_ROTATIONS, n, nodes, alphas, X, Gam, qe, R, frame,
             at(y, ROTATIONS))
@@ -113,9 +121,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             amplitude = loads[3*index[first + AT_PORT]]
             P_position_x, P_position_y, P_position_z = P[i3], P[i3 + 1], P[i3 + 2]
-            h[i3] = -P_position_x*amplitude
-            h[i3 + 1] = -P_position_y*amplitude
-            h[i3 + 2] = -P_position_z*amplitude
+            L_position_x, L_position_y, L_position_z = L[i3], L[i3 + 1], L[i3 + 2]
+            h[i3] = -L_position_x - P_position_x*amplitude
+            h[i3 + 1] = -L_position_y - P_position_y*amplitude
+            h[i3 + 2] = -L_position_z - P_position_z*amplitude
         # force on the nodes
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -128,16 +137,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+            L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
             Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                 Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
-            g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
-            g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
-            g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
+            t0 = L_rotation_x + P_rotation_x*amplitude
+            t1 = L_rotation_y + P_rotation_y*amplitude
+            t2 = L_rotation_z + P_rotation_z*amplitude
+            g[j3] = -Q_xx*t0 - Q_yx*t1 - Q_zx*t2
+            g[j3 + 1] = -Q_xy*t0 - Q_yy*t1 - Q_zy*t2
+            g[j3 + 2] = -Q_xz*t0 - Q_yz*t1 - Q_zz*t2
         # force on the modes
         for k in range(MODES, n):
             amplitude = loads[3*index[first + AT_PORT]]
             P_mode = P[k]
-            g[k] = -P_mode*amplitude
+            L_mode = L[k]
+            g[k] = -L_mode - P_mode*amplitude
         if task == ENERGY:
             power = 0.0
             for i in range(n):
@@ -160,12 +174,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 x_x, x_y, x_z = qe[i3], qe[i3 + 1], qe[i3 + 2]
-                t0 = -x0_x + x_x
-                t1 = -x0_y + x_y
-                t2 = -x0_z + x_z
-                y[i3] = R0_xx*t0 + R0_yx*t1 + R0_zx*t2 - X_x
-                y[i3 + 1] = R0_xy*t0 + R0_yy*t1 + R0_zy*t2 - X_y
-                y[i3 + 2] = R0_xz*t0 + R0_yz*t1 + R0_zz*t2 - X_z
+                t3 = -x0_x + x_x
+                t4 = -x0_y + x_y
+                t5 = -x0_z + x_z
+                y[i3] = R0_xx*t3 + R0_yx*t4 + R0_zx*t5 - X_x
+                y[i3 + 1] = R0_xy*t3 + R0_yy*t4 + R0_zy*t5 - X_y
+                y[i3 + 2] = R0_xz*t3 + R0_yz*t4 + R0_zz*t5 - X_z
             # matrix of: mean rotation of the rates = 0
             B_00 = B_01 = B_02 = B_10 = B_11 = B_12 = B_20 = B_21 = B_22 = 0.0
             for i in range(N_POSITIONS):
@@ -178,21 +192,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                     Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t3 = X_z + u_z
-                t4 = X_y + u_y
-                t5 = -t4
-                t6 = X_x + u_x
-                t7 = -t3
-                t8 = -t6
-                B_00 += Gam_positiony_x*t3 + Gam_positionz_x*t5
-                B_01 += Gam_positionx_x*t7 + Gam_positionz_x*t6
-                B_02 += Gam_positionx_x*t4 + Gam_positiony_x*t8
-                B_10 += Gam_positiony_y*t3 + Gam_positionz_y*t5
-                B_11 += Gam_positionx_y*t7 + Gam_positionz_y*t6
-                B_12 += Gam_positionx_y*t4 + Gam_positiony_y*t8
-                B_20 += Gam_positiony_z*t3 + Gam_positionz_z*t5
-                B_21 += Gam_positionx_z*t7 + Gam_positionz_z*t6
-                B_22 += Gam_positionx_z*t4 + Gam_positiony_z*t8
+                t6 = X_z + u_z
+                t7 = X_y + u_y
+                t8 = -t7
+                t9 = X_x + u_x
+                t10 = -t6
+                t11 = -t9
+                B_00 += Gam_positiony_x*t6 + Gam_positionz_x*t8
+                B_01 += Gam_positionx_x*t10 + Gam_positionz_x*t9
+                B_02 += Gam_positionx_x*t7 + Gam_positiony_x*t11
+                B_10 += Gam_positiony_y*t6 + Gam_positionz_y*t8
+                B_11 += Gam_positionx_y*t10 + Gam_positionz_y*t9
+                B_12 += Gam_positionx_y*t7 + Gam_positiony_y*t11
+                B_20 += Gam_positiony_z*t6 + Gam_positionz_z*t8
+                B_21 += Gam_positionx_z*t10 + Gam_positionz_z*t9
+                B_22 += Gam_positionx_z*t7 + Gam_positiony_z*t11
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -203,34 +217,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Gam_rotationz_x, Gam_rotationz_y, Gam_rotationz_z = (Gam[3*(j3 + 2)],
                     Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                 e0 = e0s[j]
-                t9 = (0.5)*psi_z
-                t10 = e0*psi_x
-                t11 = psi_y*t10
-                t12 = -t11 + t9
-                t13 = (0.5)*psi_y
-                t14 = psi_z*t10
-                t15 = -t13 - t14
-                t16 = e0*psi_y*psi_y
-                t17 = e0*psi_z*psi_z - 1
-                t18 = t16 + t17
-                t19 = -t11 - t9
-                t20 = (0.5)*psi_x
-                t21 = e0*psi_y*psi_z
-                t22 = t20 - t21
-                t23 = e0*psi_x*psi_x
-                t24 = t17 + t23
-                t25 = t13 - t14
-                t26 = -t20 - t21
-                t27 = t16 + t23 - 1
-                B_00 += Gam_rotationx_x*t18 + Gam_rotationy_x*t12 + Gam_rotationz_x*t15
-                B_01 += Gam_rotationx_x*t19 + Gam_rotationy_x*t24 + Gam_rotationz_x*t22
-                B_02 += Gam_rotationx_x*t25 + Gam_rotationy_x*t26 + Gam_rotationz_x*t27
-                B_10 += Gam_rotationx_y*t18 + Gam_rotationy_y*t12 + Gam_rotationz_y*t15
-                B_11 += Gam_rotationx_y*t19 + Gam_rotationy_y*t24 + Gam_rotationz_y*t22
-                B_12 += Gam_rotationx_y*t25 + Gam_rotationy_y*t26 + Gam_rotationz_y*t27
-                B_20 += Gam_rotationx_z*t18 + Gam_rotationy_z*t12 + Gam_rotationz_z*t15
-                B_21 += Gam_rotationx_z*t19 + Gam_rotationy_z*t24 + Gam_rotationz_z*t22
-                B_22 += Gam_rotationx_z*t25 + Gam_rotationy_z*t26 + Gam_rotationz_z*t27
+                t12 = (0.5)*psi_z
+                t13 = e0*psi_x
+                t14 = psi_y*t13
+                t15 = t12 - t14
+                t16 = (0.5)*psi_y
+                t17 = psi_z*t13
+                t18 = -t16 - t17
+                t19 = e0*psi_y*psi_y
+                t20 = e0*psi_z*psi_z - 1
+                t21 = t19 + t20
+                t22 = -t12 - t14
+                t23 = (0.5)*psi_x
+                t24 = e0*psi_y*psi_z
+                t25 = t23 - t24
+                t26 = e0*psi_x*psi_x
+                t27 = t20 + t26
+                t28 = t16 - t17
+                t29 = -t23 - t24
+                t30 = t19 + t26 - 1
+                B_00 += Gam_rotationx_x*t21 + Gam_rotationy_x*t15 + Gam_rotationz_x*t18
+                B_01 += Gam_rotationx_x*t22 + Gam_rotationy_x*t27 + Gam_rotationz_x*t25
+                B_02 += Gam_rotationx_x*t28 + Gam_rotationy_x*t29 + Gam_rotationz_x*t30
+                B_10 += Gam_rotationx_y*t21 + Gam_rotationy_y*t15 + Gam_rotationz_y*t18
+                B_11 += Gam_rotationx_y*t22 + Gam_rotationy_y*t27 + Gam_rotationz_y*t25
+                B_12 += Gam_rotationx_y*t28 + Gam_rotationy_y*t29 + Gam_rotationz_y*t30
+                B_20 += Gam_rotationx_z*t21 + Gam_rotationy_z*t15 + Gam_rotationz_z*t18
+                B_21 += Gam_rotationx_z*t22 + Gam_rotationy_z*t27 + Gam_rotationz_z*t25
+                B_22 += Gam_rotationx_z*t28 + Gam_rotationy_z*t29 + Gam_rotationz_z*t30
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             for column in range(n):
@@ -264,12 +278,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                    t28 = -dx0_x + dx_x
-                    t29 = -dx0_y + dx_y
-                    t30 = -dx0_z + dx_z
-                    rhs_x += -Gam_positionx_x*t28 - Gam_positiony_x*t29 - Gam_positionz_x*t30
-                    rhs_y += -Gam_positionx_y*t28 - Gam_positiony_y*t29 - Gam_positionz_y*t30
-                    rhs_z += -Gam_positionx_z*t28 - Gam_positiony_z*t29 - Gam_positionz_z*t30
+                    t31 = -dx0_x + dx_x
+                    t32 = -dx0_y + dx_y
+                    t33 = -dx0_z + dx_z
+                    rhs_x += -Gam_positionx_x*t31 - Gam_positiony_x*t32 - Gam_positionz_x*t33
+                    rhs_y += -Gam_positionx_y*t31 - Gam_positiony_y*t32 - Gam_positionz_y*t33
+                    rhs_z += -Gam_positionx_z*t31 - Gam_positiony_z*t32 - Gam_positionz_z*t33
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -281,20 +295,20 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(j3 + 2) + 1], Gam[3*(j3 + 2) + 2])
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     e0 = e0s[j]
-                    t31 = dth_y*psi_z
-                    t32 = dth_x*psi_y
-                    t33 = e0*(dth_y*psi_x - t32)
-                    t34 = dth_x*psi_z
-                    t35 = dth_z*psi_x
-                    t36 = t34 - t35
-                    t37 = e0*psi_z
-                    t38 = dth_x + (0.5)*dth_z*psi_y + psi_y*t33 - 0.5*t31 - t36*t37
-                    t39 = dth_z*psi_y - t31
-                    t40 = dth_y - psi_x*t33 + (0.5)*t34 - 0.5*t35 + t37*t39
-                    t41 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t36 - e0*psi_y*t39 - 0.5*t32
-                    rhs_x += -Gam_rotationx_x*t38 - Gam_rotationy_x*t40 - Gam_rotationz_x*t41
-                    rhs_y += -Gam_rotationx_y*t38 - Gam_rotationy_y*t40 - Gam_rotationz_y*t41
-                    rhs_z += -Gam_rotationx_z*t38 - Gam_rotationy_z*t40 - Gam_rotationz_z*t41
+                    t34 = dth_y*psi_z
+                    t35 = dth_x*psi_y
+                    t36 = e0*(dth_y*psi_x - t35)
+                    t37 = dth_x*psi_z
+                    t38 = dth_z*psi_x
+                    t39 = t37 - t38
+                    t40 = e0*psi_z
+                    t41 = dth_x + (0.5)*dth_z*psi_y + psi_y*t36 - 0.5*t34 - t39*t40
+                    t42 = dth_z*psi_y - t34
+                    t43 = dth_y - psi_x*t36 + (0.5)*t37 - 0.5*t38 + t40*t42
+                    t44 = (0.5)*dth_y*psi_x + dth_z + e0*psi_x*t39 - e0*psi_y*t42 - 0.5*t35
+                    rhs_x += -Gam_rotationx_x*t41 - Gam_rotationy_x*t43 - Gam_rotationz_x*t44
+                    rhs_y += -Gam_rotationx_y*t41 - Gam_rotationy_y*t43 - Gam_rotationz_y*t44
+                    rhs_z += -Gam_rotationx_z*t41 - Gam_rotationy_z*t43 - Gam_rotationz_z*t44
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dqm = dqe[k]
@@ -317,21 +331,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     amplitude = loads[3*index[first + AT_PORT]]
                     P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                    L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                     Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                         Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                         Q[9*j + 8])
-                    dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                        Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
-                        Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                        Q_zz*dth_y)))
-                    dg[j3 + 1] = (-amplitude*(P_rotation_x*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z
-                        - Q_zy*dth0_y) + P_rotation_y*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + P_rotation_z*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z +
-                        Q_zz*dth_x)))
-                    dg[j3 + 2] = (-amplitude*(P_rotation_x*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z
-                        - Q_zz*dth0_y) + P_rotation_y*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x +
-                        Q_zz*dth0_x) + P_rotation_z*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                        Q_zy*dth_x)))
+                    t45 = L_rotation_x + P_rotation_x*amplitude
+                    t46 = L_rotation_y + P_rotation_y*amplitude
+                    t47 = L_rotation_z + P_rotation_z*amplitude
+                    dg[j3] = (-t45*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) -
+                        t46*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) -
+                        t47*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y))
+                    dg[j3 + 1] = (-t45*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) -
+                        t46*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) -
+                        t47*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x))
+                    dg[j3 + 2] = (-t45*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) -
+                        t46*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) -
+                        t47*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x))
                 # differential: force on the modes
                 for k in range(MODES, n):
                     dg[k] = 0.0

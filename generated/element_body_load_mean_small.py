@@ -24,6 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
+from sebody.kernels.dense import columns_times
 from sebody.kernels.frame_search import weighted_mean
 from sebody.kernels.rotations import inverse_tangent_coefficients, stumpff_2345
 
@@ -33,6 +34,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -41,9 +44,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 12
-OPERATIONS = {"residual": (310, 21, 129, 0),
-              "column": (44, 9, 125, 0)}
+WORK_ROWS = 13
+OPERATIONS = {"residual": (310, 24, 132, 0),
+              "column": (44, 9, 128, 0)}
 
 
 @kernel_function
@@ -57,31 +60,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     row = padded(max(n, 9*N_ROTATIONS))
     qe = work
     ve = at(work, row)
-    beta = at(work, 2*row)
-    y = at(work, 3*row)
-    e0s = at(work, 4*row)
-    e1s = at(work, 5*row)
-    b0s = at(work, 6*row)
-    b1s = at(work, 7*row)
-    Q = at(work, 8*row)
-    h = at(work, 9*row)
-    dqe = at(work, 10*row)
-    dg = at(work, 11*row)
+    L = at(work, 2*row)
+    beta = at(work, 3*row)
+    y = at(work, 4*row)
+    e0s = at(work, 5*row)
+    e1s = at(work, 6*row)
+    b0s = at(work, 7*row)
+    b1s = at(work, 8*row)
+    Q = at(work, 9*row)
+    h = at(work, 10*row)
+    dqe = at(work, 11*row)
+    dg = at(work, 12*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         reference = at(references, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 3*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
+        # load by the columns of a series
+        columns_times(columns, amplitudes, L, n, series)
         # rotation of the frame, (15)-(16)
         status = weighted_mean(N_ROTATIONS, nodes, alpha_rs, R, reference, frame,
             at(beta, ROTATIONS), at(y, ROTATIONS))
@@ -131,9 +140,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 3*i
             amplitude = loads[3*index[first + AT_PORT]]
             P_position_x, P_position_y, P_position_z = P[i3], P[i3 + 1], P[i3 + 2]
-            h[i3] = -P_position_x*amplitude
-            h[i3 + 1] = -P_position_y*amplitude
-            h[i3 + 2] = -P_position_z*amplitude
+            L_position_x, L_position_y, L_position_z = L[i3], L[i3 + 1], L[i3 + 2]
+            h[i3] = -L_position_x - P_position_x*amplitude
+            h[i3 + 1] = -L_position_y - P_position_y*amplitude
+            h[i3 + 2] = -L_position_z - P_position_z*amplitude
         # force on the nodes
         for i in range(N_POSITIONS):
             i3 = 3*i
@@ -146,16 +156,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + 3*j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+            L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
             Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                 Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7], Q[9*j + 8])
-            g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
-            g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
-            g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
+            t0 = L_rotation_x + P_rotation_x*amplitude
+            t1 = L_rotation_y + P_rotation_y*amplitude
+            t2 = L_rotation_z + P_rotation_z*amplitude
+            g[j3] = -Q_xx*t0 - Q_yx*t1 - Q_zx*t2
+            g[j3 + 1] = -Q_xy*t0 - Q_yy*t1 - Q_zy*t2
+            g[j3 + 2] = -Q_xz*t0 - Q_yz*t1 - Q_zz*t2
         # force on the modes
         for k in range(MODES, n):
             amplitude = loads[3*index[first + AT_PORT]]
             P_mode = P[k]
-            g[k] = -P_mode*amplitude
+            L_mode = L[k]
+            g[k] = -L_mode - P_mode*amplitude
         if task == ENERGY:
             power = 0.0
             for i in range(n):
@@ -183,35 +198,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     beta_x, beta_y, beta_z = beta[j3], beta[j3 + 1], beta[j3 + 2]
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     b0 = b0s[j]
-                    t0 = beta_y*dth_z
-                    t1 = beta_z*dth_y
-                    t2 = beta_x*dth_y
-                    t3 = beta_y*dth_x
-                    t4 = b0*(t2 - t3)
-                    t5 = beta_x*dth_z
-                    t6 = beta_z*dth_x - t5
-                    t7 = b0*beta_z
-                    t8 = t0 - t1
-                    mean_dth0_x += alpha_r*(beta_y*t4 + dth_x + (0.5)*t0 - 0.5*t1 - t6*t7)
-                    mean_dth0_y += (alpha_r*(-beta_x*t4 + (0.5)*beta_z*dth_x + dth_y - 0.5*t5 +
-                        t7*t8))
-                    mean_dth0_z += alpha_r*(b0*beta_x*t6 - b0*beta_y*t8 + dth_z + (0.5)*t2 - 0.5*t3)
+                    t3 = beta_y*dth_z
+                    t4 = beta_z*dth_y
+                    t5 = beta_x*dth_y
+                    t6 = beta_y*dth_x
+                    t7 = b0*(t5 - t6)
+                    t8 = beta_x*dth_z
+                    t9 = beta_z*dth_x - t8
+                    t10 = b0*beta_z
+                    t11 = t3 - t4
+                    mean_dth0_x += alpha_r*(beta_y*t7 + dth_x - t10*t9 + (0.5)*t3 - 0.5*t4)
+                    mean_dth0_y += (alpha_r*(-beta_x*t7 + (0.5)*beta_z*dth_x + dth_y + t10*t11 -
+                        0.5*t8))
+                    mean_dth0_z += (alpha_r*(b0*beta_x*t9 - b0*beta_y*t11 + dth_z + (0.5)*t5 -
+                        0.5*t6))
                 # rate of the frame, (19)
-                t9 = beta0_z*c2
-                t10 = beta0_x*c3
-                t11 = beta0_y*t10
-                t12 = beta0_y*c2
-                t13 = beta0_z*t10
-                t14 = beta0_y*beta0_y*c3
-                t15 = beta0_z*beta0_z*c3 - 1
-                t16 = beta0_x*c2
-                t17 = beta0_x*beta0_x*c3
-                dth0_x = (mean_dth0_x*(-t14 - t15) + mean_dth0_y*(t11 + t9) + mean_dth0_z*(-t12 +
-                    t13))
-                dth0_y = (mean_dth0_x*(t11 - t9) + mean_dth0_y*(-t15 - t17) +
-                    mean_dth0_z*(beta0_y*beta0_z*c3 + t16))
-                dth0_z = (mean_dth0_x*(t12 + t13) + mean_dth0_y*(beta0_y*beta0_z*c3 - t16) +
-                    mean_dth0_z*(-t14 - t17 + 1))
+                t12 = beta0_z*c2
+                t13 = beta0_x*c3
+                t14 = beta0_y*t13
+                t15 = beta0_y*c2
+                t16 = beta0_z*t13
+                t17 = beta0_y*beta0_y*c3
+                t18 = beta0_z*beta0_z*c3 - 1
+                t19 = beta0_x*c2
+                t20 = beta0_x*beta0_x*c3
+                dth0_x = (mean_dth0_x*(-t17 - t18) + mean_dth0_y*(t12 + t14) + mean_dth0_z*(-t15 +
+                    t16))
+                dth0_y = (mean_dth0_x*(-t12 + t14) + mean_dth0_y*(-t18 - t20) +
+                    mean_dth0_z*(beta0_y*beta0_z*c3 + t19))
+                dth0_z = (mean_dth0_x*(t15 + t16) + mean_dth0_y*(beta0_y*beta0_z*c3 - t19) +
+                    mean_dth0_z*(-t17 - t20 + 1))
                 # differential: force on the nodes, left in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -225,21 +241,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                     amplitude = loads[3*index[first + AT_PORT]]
                     P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                    L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                     Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                         Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                         Q[9*j + 8])
-                    dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                        Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
-                        Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                        Q_zz*dth_y)))
-                    dg[j3 + 1] = (-amplitude*(P_rotation_x*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z
-                        - Q_zy*dth0_y) + P_rotation_y*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                        Q_zy*dth0_x) + P_rotation_z*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z +
-                        Q_zz*dth_x)))
-                    dg[j3 + 2] = (-amplitude*(P_rotation_x*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z
-                        - Q_zz*dth0_y) + P_rotation_y*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x +
-                        Q_zz*dth0_x) + P_rotation_z*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                        Q_zy*dth_x)))
+                    t21 = L_rotation_x + P_rotation_x*amplitude
+                    t22 = L_rotation_y + P_rotation_y*amplitude
+                    t23 = L_rotation_z + P_rotation_z*amplitude
+                    dg[j3] = (-t21*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) -
+                        t22*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) -
+                        t23*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y))
+                    dg[j3 + 1] = (-t21*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) -
+                        t22*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) -
+                        t23*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x))
+                    dg[j3 + 2] = (-t21*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) -
+                        t22*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) -
+                        t23*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x))
                 # differential: force on the modes
                 for k in range(MODES, n):
                     dg[k] = 0.0

@@ -24,6 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
+from sebody.kernels.dense import columns_times
 from sebody.kernels.frame_search import planar_fit, planar_relative_angles
 
 FRAME = "positions"
@@ -32,6 +33,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -40,8 +43,8 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 6
-OPERATIONS = {"residual": (360, 10, 2, 0),
+WORK_ROWS = 7
+OPERATIONS = {"residual": (360, 12, 3, 0),
               "column": (1, 12, 0, 0)}
 
 
@@ -56,24 +59,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     row = padded(max(n, 9*N_ROTATIONS))
     qe = work
     ve = at(work, row)
-    y = at(work, 2*row)
-    h = at(work, 3*row)
-    dqe = at(work, 4*row)
-    dg = at(work, 5*row)
+    L = at(work, 2*row)
+    y = at(work, 3*row)
+    h = at(work, 4*row)
+    dqe = at(work, 5*row)
+    dg = at(work, 6*row)
     for element in range(count):
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 2*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         for i in range(n):
             qe[i] = q[unknowns[i]]
             ve[i] = v[unknowns[i]]
+        # load by the columns of a series
+        columns_times(columns, amplitudes, L, n, series)
         # rotation of the frame: best fit of the positions
         status = planar_fit(N_POSITIONS, fits, X, alphas, qe, frame)
         if status != 0:
@@ -88,8 +97,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             amplitude = loads[3*index[first + AT_PORT]]
             P_position_x, P_position_y = P[i3], P[i3 + 1]
-            h[i3] = -P_position_x*amplitude
-            h[i3 + 1] = -P_position_y*amplitude
+            L_position_x, L_position_y = L[i3], L[i3 + 1]
+            h[i3] = -L_position_x - P_position_x*amplitude
+            h[i3 + 1] = -L_position_y - P_position_y*amplitude
         # force on the nodes
         for i in range(N_POSITIONS):
             i3 = 2*i
@@ -101,12 +111,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             j3 = ROTATIONS + j
             amplitude = loads[3*index[first + AT_PORT]]
             P_rotation_z = P[j3]
-            g[j3] = -P_rotation_z*amplitude
+            L_rotation_z = L[j3]
+            g[j3] = -L_rotation_z - P_rotation_z*amplitude
         # force on the modes
         for k in range(MODES, n):
             amplitude = loads[3*index[first + AT_PORT]]
             P_mode = P[k]
-            g[k] = -P_mode*amplitude
+            L_mode = L[k]
+            g[k] = -L_mode - P_mode*amplitude
         if task == ENERGY:
             power = 0.0
             for i in range(n):

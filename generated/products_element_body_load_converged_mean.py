@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import clear, inverse_3
+from sebody.kernels.dense import clear, columns_times, inverse_3
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.rotations import inverse_tangent_coefficients
 
@@ -34,6 +34,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -42,8 +44,8 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 16
-OPERATIONS = {"residual": (240, 21, 132, 0),
+WORK_ROWS = 17
+OPERATIONS = {"residual": (240, 24, 135, 0),
               "column": (18, 9, 121, 0)}
 KEPT = 9      # numbers kept between two calls
 
@@ -65,25 +67,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         dqe = at(work, 12 + 3*row)
         dve = at(work, 12 + 4*row)
         dae = at(work, 12 + 5*row)
-        y = at(work, 12 + 6*row)
-        e0s = at(work, 12 + 7*row)
-        e1s = at(work, 12 + 8*row)
-        Q = at(work, 12 + 9*row)
-        h = at(work, 12 + 10*row)
-        dg = at(work, 12 + 11*row)
-        bdqe = at(work, 12 + 12*row)
-        bdve = at(work, 12 + 13*row)
-        bdae = at(work, 12 + 14*row)
-        bdg = at(work, 12 + 15*row)
+        L = at(work, 12 + 6*row)
+        y = at(work, 12 + 7*row)
+        e0s = at(work, 12 + 8*row)
+        e1s = at(work, 12 + 9*row)
+        Q = at(work, 12 + 10*row)
+        h = at(work, 12 + 11*row)
+        dg = at(work, 12 + 12*row)
+        bdqe = at(work, 12 + 13*row)
+        bdve = at(work, 12 + 14*row)
+        bdae = at(work, 12 + 15*row)
+        bdg = at(work, 12 + 16*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 3*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         vectors = at(matrices, 4*element*n)
         if task == PREPARE:
@@ -91,6 +97,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 qe[i] = q[unknowns[i]]
                 ve[i] = v[unknowns[i]]
                 ae[i] = a[unknowns[i]]
+            # load by the columns of a series
+            columns_times(columns, amplitudes, L, n, series)
             # rotation of the frame: sum alpha_j psi_j = 0
             status = converged_mean(N_ROTATIONS, nodes, alpha_rs, R, frame, at(y, ROTATIONS))
             if status != 0:
@@ -123,9 +131,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 3*i
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_position_x, P_position_y, P_position_z = P[i3], P[i3 + 1], P[i3 + 2]
-                h[i3] = -P_position_x*amplitude
-                h[i3 + 1] = -P_position_y*amplitude
-                h[i3 + 2] = -P_position_z*amplitude
+                L_position_x, L_position_y, L_position_z = L[i3], L[i3 + 1], L[i3 + 2]
+                h[i3] = -L_position_x - P_position_x*amplitude
+                h[i3 + 1] = -L_position_y - P_position_y*amplitude
+                h[i3 + 2] = -L_position_z - P_position_z*amplitude
             # force on the nodes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -138,17 +147,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
-                g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
-                g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
-                g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
+                t0 = L_rotation_x + P_rotation_x*amplitude
+                t1 = L_rotation_y + P_rotation_y*amplitude
+                t2 = L_rotation_z + P_rotation_z*amplitude
+                g[j3] = -Q_xx*t0 - Q_yx*t1 - Q_zx*t2
+                g[j3 + 1] = -Q_xy*t0 - Q_yy*t1 - Q_zy*t2
+                g[j3 + 2] = -Q_xz*t0 - Q_yz*t1 - Q_zz*t2
             # force on the modes
             for k in range(MODES, n):
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_mode = P[k]
-                g[k] = -P_mode*amplitude
+                L_mode = L[k]
+                g[k] = -L_mode - P_mode*amplitude
             # matrix of: B rate = sum alpha_j T^-1(psi_j) rate_j
             B_00 = B_01 = B_02 = B_10 = B_11 = B_12 = B_20 = B_21 = B_22 = 0.0
             for j in range(N_ROTATIONS):
@@ -156,25 +170,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t0 = e0*psi_y*psi_y
-                t1 = e0*psi_z*psi_z - 1
-                t2 = (0.5)*psi_z
-                t3 = e0*psi_x
-                t4 = psi_y*t3
-                t5 = (0.5)*psi_y
-                t6 = psi_z*t3
-                t7 = e0*psi_x*psi_x
-                t8 = (0.5)*psi_x
-                t9 = e0*psi_y*psi_z
-                B_00 += alpha_r*(-t0 - t1)
-                B_01 += alpha_r*(t2 + t4)
-                B_02 += alpha_r*(-t5 + t6)
-                B_10 += alpha_r*(-t2 + t4)
-                B_11 += alpha_r*(-t1 - t7)
-                B_12 += alpha_r*(t8 + t9)
-                B_20 += alpha_r*(t5 + t6)
-                B_21 += alpha_r*(-t8 + t9)
-                B_22 += alpha_r*(-t0 - t7 + 1)
+                t3 = e0*psi_y*psi_y
+                t4 = e0*psi_z*psi_z - 1
+                t5 = (0.5)*psi_z
+                t6 = e0*psi_x
+                t7 = psi_y*t6
+                t8 = (0.5)*psi_y
+                t9 = psi_z*t6
+                t10 = e0*psi_x*psi_x
+                t11 = (0.5)*psi_x
+                t12 = e0*psi_y*psi_z
+                B_00 += alpha_r*(-t3 - t4)
+                B_01 += alpha_r*(t5 + t7)
+                B_02 += alpha_r*(-t8 + t9)
+                B_10 += alpha_r*(-t5 + t7)
+                B_11 += alpha_r*(-t10 - t4)
+                B_12 += alpha_r*(t11 + t12)
+                B_20 += alpha_r*(t8 + t9)
+                B_21 += alpha_r*(-t11 + t12)
+                B_22 += alpha_r*(-t10 - t3 + 1)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             kept[0] = Bxx
@@ -210,16 +224,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 e0 = e0s[j]
-                t10 = -dth_x*psi_y + dth_y*psi_x
-                t11 = dth_x*psi_z
-                t12 = -dth_z*psi_x + t11
-                t13 = -dth_y*psi_z + dth_z*psi_y
-                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t10 +
-                    e0*psi_z*t12))
-                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t10 - e0*psi_z*t13 -
-                    0.5*t11))
-                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t12 +
-                    e0*psi_y*t13))
+                t13 = -dth_x*psi_y + dth_y*psi_x
+                t14 = dth_x*psi_z
+                t15 = -dth_z*psi_x + t14
+                t16 = -dth_y*psi_z + dth_z*psi_y
+                rhs_x += (-alpha_r*(-dth_x + (0.5)*dth_y*psi_z - 0.5*dth_z*psi_y - e0*psi_y*t13 +
+                    e0*psi_z*t15))
+                rhs_y += (-alpha_r*(-dth_y + (0.5)*dth_z*psi_x + e0*psi_x*t13 - e0*psi_z*t16 -
+                    0.5*t14))
+                rhs_z += (-alpha_r*((0.5)*dth_x*psi_y - 0.5*dth_y*psi_x - dth_z - e0*psi_x*t15 +
+                    e0*psi_y*t16))
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -236,21 +250,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
-                dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                    Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
-                    Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                    Q_zz*dth_y)))
-                dg[j3 + 1] = (-amplitude*(P_rotation_x*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z -
-                    Q_zy*dth0_y) + P_rotation_y*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                    Q_zy*dth0_x) + P_rotation_z*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z +
-                    Q_zz*dth_x)))
-                dg[j3 + 2] = (-amplitude*(P_rotation_x*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
-                    Q_zz*dth0_y) + P_rotation_y*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x +
-                    Q_zz*dth0_x) + P_rotation_z*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                    Q_zy*dth_x)))
+                t17 = L_rotation_x + P_rotation_x*amplitude
+                t18 = L_rotation_y + P_rotation_y*amplitude
+                t19 = L_rotation_z + P_rotation_z*amplitude
+                dg[j3] = (-t17*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) -
+                    t18*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) - t19*(Q_xx*dth0_y
+                    - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y))
+                dg[j3 + 1] = (-t17*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) -
+                    t18*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) - t19*(Q_xy*dth0_y
+                    - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x))
+                dg[j3 + 2] = (-t17*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) -
+                    t18*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) - t19*(Q_xz*dth0_y
+                    - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x))
             # differential: force on the modes
             for k in range(MODES, n):
                 dg[k] = 0.0
@@ -285,26 +300,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
-                t14 = P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz
-                t15 = amplitude*bdgt_y
-                t16 = P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy
-                t17 = amplitude*bdgt_z
-                t18 = P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx
-                t19 = amplitude*bdgt_x
-                bdqe[j3] += -t14*t15 + t16*t17
-                bdqe[j3 + 1] += t14*t19 - t17*t18
-                bdqe[j3 + 2] += t15*t18 - t16*t19
-                bdth0_x += (-t15*(P_rotation_y*Q_zy - P_rotation_z*Q_yy) - t17*(P_rotation_y*Q_zz
-                    - P_rotation_z*Q_yz) - t19*(P_rotation_y*Q_zx - P_rotation_z*Q_yx))
-                bdth0_y += (-t15*(-P_rotation_x*Q_zy + P_rotation_z*Q_xy) -
-                    t17*(-P_rotation_x*Q_zz + P_rotation_z*Q_xz) - t19*(-P_rotation_x*Q_zx +
-                    P_rotation_z*Q_xx))
-                bdth0_z += (-t15*(P_rotation_x*Q_yy - P_rotation_y*Q_xy) - t17*(P_rotation_x*Q_yz
-                    - P_rotation_y*Q_xz) - t19*(P_rotation_x*Q_yx - P_rotation_y*Q_xx))
+                t20 = L_rotation_x + P_rotation_x*amplitude
+                t21 = L_rotation_y + P_rotation_y*amplitude
+                t22 = L_rotation_z + P_rotation_z*amplitude
+                t23 = Q_xy*t20 + Q_yy*t21 + Q_zy*t22
+                t24 = Q_xz*t20 + Q_yz*t21 + Q_zz*t22
+                t25 = Q_xx*t20 + Q_yx*t21 + Q_zx*t22
+                bdqe[j3] += -bdgt_y*t24 + bdgt_z*t23
+                bdqe[j3 + 1] += bdgt_x*t24 - bdgt_z*t25
+                bdqe[j3 + 2] += -bdgt_x*t23 + bdgt_y*t25
+                bdth0_x += (bdgt_x*(Q_yx*t22 - Q_zx*t21) + bdgt_y*(Q_yy*t22 - Q_zy*t21) +
+                    bdgt_z*(Q_yz*t22 - Q_zz*t21))
+                bdth0_y += (bdgt_x*(-Q_xx*t22 + Q_zx*t20) + bdgt_y*(-Q_xy*t22 + Q_zy*t20) +
+                    bdgt_z*(-Q_xz*t22 + Q_zz*t20))
+                bdth0_z += (bdgt_x*(Q_xx*t21 - Q_yx*t20) + bdgt_y*(Q_xy*t21 - Q_yy*t20) +
+                    bdgt_z*(Q_xz*t21 - Q_yz*t20))
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -315,34 +330,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdth0_z += -bdgx_x*h_y + bdgx_y*h_x
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             rhs_x = rhs_y = rhs_z = 0.0
-            t20 = bdth0_x + rhs_x
-            t21 = bdth0_y + rhs_y
-            t22 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t20 + Byx*t21 + Bzx*t22
-            mdth0_y = Bxy*t20 + Byy*t21 + Bzy*t22
-            mdth0_z = Bxz*t20 + Byz*t21 + Bzz*t22
+            t26 = bdth0_x + rhs_x
+            t27 = bdth0_y + rhs_y
+            t28 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t26 + Byx*t27 + Bzx*t28
+            mdth0_y = Bxy*t26 + Byy*t27 + Bzy*t28
+            mdth0_z = Bxz*t26 + Byz*t27 + Bzz*t28
             # transposed: B rate = sum alpha_j T^-1(psi_j) rate_j
             for j in range(N_ROTATIONS):
                 j3 = ROTATIONS + 3*j
                 alpha_r = alpha_rs[j]
                 psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                 e0 = e0s[j]
-                t23 = (0.5)*psi_z
-                t24 = e0*psi_x
-                t25 = psi_y*t24
-                t26 = alpha_r*mdth0_y
-                t27 = (0.5)*psi_y
-                t28 = psi_z*t24
-                t29 = alpha_r*mdth0_z
-                t30 = e0*psi_y*psi_y
-                t31 = e0*psi_z*psi_z - 1
-                t32 = alpha_r*mdth0_x
-                t33 = (0.5)*psi_x
-                t34 = e0*psi_y*psi_z
-                t35 = e0*psi_x*psi_x
-                bdqe[j3] += -t26*(-t23 - t25) - t29*(t27 - t28) - t32*(t30 + t31)
-                bdqe[j3 + 1] += -t26*(t31 + t35) - t29*(-t33 - t34) - t32*(t23 - t25)
-                bdqe[j3 + 2] += -t26*(t33 - t34) - t29*(t30 + t35 - 1) - t32*(-t27 - t28)
+                t29 = (0.5)*psi_z
+                t30 = e0*psi_x
+                t31 = psi_y*t30
+                t32 = alpha_r*mdth0_y
+                t33 = (0.5)*psi_y
+                t34 = psi_z*t30
+                t35 = alpha_r*mdth0_z
+                t36 = e0*psi_y*psi_y
+                t37 = e0*psi_z*psi_z - 1
+                t38 = alpha_r*mdth0_x
+                t39 = (0.5)*psi_x
+                t40 = e0*psi_y*psi_z
+                t41 = e0*psi_x*psi_x
+                bdqe[j3] += -t32*(-t29 - t31) - t35*(t33 - t34) - t38*(t36 + t37)
+                bdqe[j3 + 1] += -t32*(t37 + t41) - t35*(-t39 - t40) - t38*(t29 - t31)
+                bdqe[j3 + 2] += -t32*(t39 - t40) - t35*(t36 + t41 - 1) - t38*(-t33 - t34)
             for i in range(n):
                 vectors[n + i] = bdqe[i]
             for i in range(n):

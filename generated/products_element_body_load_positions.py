@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import clear, inverse_3
+from sebody.kernels.dense import clear, columns_times, inverse_3
 from sebody.kernels.frame_search import best_fit
 from sebody.kernels.rotations import inverse_tangent_coefficients, relative_rotations
 
@@ -34,6 +34,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -42,8 +44,8 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 16
-OPERATIONS = {"residual": (400, 75, 96, 0),
+WORK_ROWS = 17
+OPERATIONS = {"residual": (400, 78, 99, 0),
               "column": (18, 29, 72, 0)}
 KEPT = 9      # numbers kept between two calls
 
@@ -65,25 +67,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         dqe = at(work, 12 + 3*row)
         dve = at(work, 12 + 4*row)
         dae = at(work, 12 + 5*row)
-        y = at(work, 12 + 6*row)
-        e0s = at(work, 12 + 7*row)
-        e1s = at(work, 12 + 8*row)
-        Q = at(work, 12 + 9*row)
-        h = at(work, 12 + 10*row)
-        dg = at(work, 12 + 11*row)
-        bdqe = at(work, 12 + 12*row)
-        bdve = at(work, 12 + 13*row)
-        bdae = at(work, 12 + 14*row)
-        bdg = at(work, 12 + 15*row)
+        L = at(work, 12 + 6*row)
+        y = at(work, 12 + 7*row)
+        e0s = at(work, 12 + 8*row)
+        e1s = at(work, 12 + 9*row)
+        Q = at(work, 12 + 10*row)
+        h = at(work, 12 + 11*row)
+        dg = at(work, 12 + 12*row)
+        bdqe = at(work, 12 + 13*row)
+        bdve = at(work, 12 + 14*row)
+        bdae = at(work, 12 + 15*row)
+        bdg = at(work, 12 + 16*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 3*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         vectors = at(matrices, 4*element*n)
         if task == PREPARE:
@@ -91,6 +97,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 qe[i] = q[unknowns[i]]
                 ve[i] = v[unknowns[i]]
                 ae[i] = a[unknowns[i]]
+            # load by the columns of a series
+            columns_times(columns, amplitudes, L, n, series)
             # rotation of the frame: best fit of the positions
             status = best_fit(N_POSITIONS, fits, X, alphas, qe, frame)
             if status != 0:
@@ -127,9 +135,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 3*i
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_position_x, P_position_y, P_position_z = P[i3], P[i3 + 1], P[i3 + 2]
-                h[i3] = -P_position_x*amplitude
-                h[i3 + 1] = -P_position_y*amplitude
-                h[i3 + 2] = -P_position_z*amplitude
+                L_position_x, L_position_y, L_position_z = L[i3], L[i3 + 1], L[i3 + 2]
+                h[i3] = -L_position_x - P_position_x*amplitude
+                h[i3 + 1] = -L_position_y - P_position_y*amplitude
+                h[i3 + 2] = -L_position_z - P_position_z*amplitude
             # force on the nodes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -142,17 +151,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
-                g[j3] = -amplitude*(P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx)
-                g[j3 + 1] = -amplitude*(P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy)
-                g[j3 + 2] = -amplitude*(P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz)
+                t0 = L_rotation_x + P_rotation_x*amplitude
+                t1 = L_rotation_y + P_rotation_y*amplitude
+                t2 = L_rotation_z + P_rotation_z*amplitude
+                g[j3] = -Q_xx*t0 - Q_yx*t1 - Q_zx*t2
+                g[j3 + 1] = -Q_xy*t0 - Q_yy*t1 - Q_zy*t2
+                g[j3 + 2] = -Q_xz*t0 - Q_yz*t1 - Q_zz*t2
             # force on the modes
             for k in range(MODES, n):
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_mode = P[k]
-                g[k] = -P_mode*amplitude
+                L_mode = L[k]
+                g[k] = -L_mode - P_mode*amplitude
             # origin of the frame, (14)
             x0_x = x0_y = x0_z = 0.0
             for i in range(N_POSITIONS):
@@ -167,12 +181,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 3*i
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 x_x, x_y, x_z = qe[i3], qe[i3 + 1], qe[i3 + 2]
-                t0 = -x0_x + x_x
-                t1 = -x0_y + x_y
-                t2 = -x0_z + x_z
-                y[i3] = R0_xx*t0 + R0_yx*t1 + R0_zx*t2 - X_x
-                y[i3 + 1] = R0_xy*t0 + R0_yy*t1 + R0_zy*t2 - X_y
-                y[i3 + 2] = R0_xz*t0 + R0_yz*t1 + R0_zz*t2 - X_z
+                t3 = -x0_x + x_x
+                t4 = -x0_y + x_y
+                t5 = -x0_z + x_z
+                y[i3] = R0_xx*t3 + R0_yx*t4 + R0_zx*t5 - X_x
+                y[i3 + 1] = R0_xy*t3 + R0_yy*t4 + R0_zy*t5 - X_y
+                y[i3 + 2] = R0_xz*t3 + R0_yz*t4 + R0_zz*t5 - X_z
             # matrix of: sum w_j X_j x (rate of r_j) = 0
             B_00 = B_01 = B_02 = B_10 = B_11 = B_12 = B_20 = B_21 = B_22 = 0.0
             for i in range(N_POSITIONS):
@@ -180,24 +194,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
-                t3 = X_z + u_z
-                t4 = X_y + u_y
-                t5 = -t4
-                t6 = X_x + u_x
-                t7 = X_y*fit
-                t8 = -t6
-                t9 = X_z*fit
-                t10 = X_x*fit
-                t11 = -t3
-                B_00 += fit*(X_y*t5 - X_z*t3)
-                B_01 += t6*t7
-                B_02 += -t8*t9
-                B_10 += -t10*t5
-                B_11 += fit*(-X_x*t6 + X_z*t11)
-                B_12 += t4*t9
-                B_20 += t10*t3
-                B_21 += -t11*t7
-                B_22 += fit*(X_x*t8 - X_y*t4)
+                t6 = X_z + u_z
+                t7 = X_y + u_y
+                t8 = -t7
+                t9 = X_x + u_x
+                t10 = X_y*fit
+                t11 = -t9
+                t12 = X_z*fit
+                t13 = X_x*fit
+                t14 = -t6
+                B_00 += fit*(X_y*t8 - X_z*t6)
+                B_01 += t10*t9
+                B_02 += -t11*t12
+                B_10 += -t13*t8
+                B_11 += fit*(-X_x*t9 + X_z*t14)
+                B_12 += t12*t7
+                B_20 += t13*t6
+                B_21 += -t10*t14
+                B_22 += fit*(X_x*t11 - X_y*t7)
             Bxx, Bxy, Bxz, Byx, Byy, Byz, Bzx, Bzy, Bzz = inverse_3(B_00, B_01, B_02, B_10, B_11,
                 B_12, B_20, B_21, B_22)
             kept[0] = Bxx
@@ -241,12 +255,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                 dx_x, dx_y, dx_z = dqe[i3], dqe[i3 + 1], dqe[i3 + 2]
-                t12 = -dx0_z + dx_z
-                t13 = -dx0_y + dx_y
-                t14 = -dx0_x + dx_x
-                rhs_x += -fit*(X_y*t12 - X_z*t13)
-                rhs_y += -fit*(-X_x*t12 + X_z*t14)
-                rhs_z += -fit*(X_x*t13 - X_y*t14)
+                t15 = -dx0_z + dx_z
+                t16 = -dx0_y + dx_y
+                t17 = -dx0_x + dx_x
+                rhs_x += -fit*(X_y*t15 - X_z*t16)
+                rhs_y += -fit*(-X_x*t15 + X_z*t17)
+                rhs_z += -fit*(X_x*t16 - X_y*t17)
             dth0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
             dth0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
             dth0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -262,22 +276,23 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
                 dth_x, dth_y, dth_z = dqe[j3], dqe[j3 + 1], dqe[j3 + 2]
-                dg[j3] = (-amplitude*(P_rotation_x*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z -
-                    Q_zx*dth0_y) + P_rotation_y*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y +
-                    Q_zx*dth0_x) + P_rotation_z*(Q_xx*dth0_y - Q_yx*dth0_x + Q_zy*dth_z -
-                    Q_zz*dth_y)))
-                dg[j3 + 1] = (-amplitude*(P_rotation_x*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z -
-                    Q_zy*dth0_y) + P_rotation_y*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x +
-                    Q_zy*dth0_x) + P_rotation_z*(Q_xy*dth0_y - Q_yy*dth0_x - Q_zx*dth_z +
-                    Q_zz*dth_x)))
-                dg[j3 + 2] = (-amplitude*(P_rotation_x*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z -
-                    Q_zz*dth0_y) + P_rotation_y*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x +
-                    Q_zz*dth0_x) + P_rotation_z*(Q_xz*dth0_y - Q_yz*dth0_x + Q_zx*dth_y -
-                    Q_zy*dth_x)))
+                t18 = L_rotation_x + P_rotation_x*amplitude
+                t19 = L_rotation_y + P_rotation_y*amplitude
+                t20 = L_rotation_z + P_rotation_z*amplitude
+                dg[j3] = (-t18*(Q_xy*dth_z - Q_xz*dth_y + Q_yx*dth0_z - Q_zx*dth0_y) -
+                    t19*(-Q_xx*dth0_z + Q_yy*dth_z - Q_yz*dth_y + Q_zx*dth0_x) - t20*(Q_xx*dth0_y
+                    - Q_yx*dth0_x + Q_zy*dth_z - Q_zz*dth_y))
+                dg[j3 + 1] = (-t18*(-Q_xx*dth_z + Q_xz*dth_x + Q_yy*dth0_z - Q_zy*dth0_y) -
+                    t19*(-Q_xy*dth0_z - Q_yx*dth_z + Q_yz*dth_x + Q_zy*dth0_x) - t20*(Q_xy*dth0_y
+                    - Q_yy*dth0_x - Q_zx*dth_z + Q_zz*dth_x))
+                dg[j3 + 2] = (-t18*(Q_xx*dth_y - Q_xy*dth_x + Q_yz*dth0_z - Q_zz*dth0_y) -
+                    t19*(-Q_xz*dth0_z + Q_yx*dth_y - Q_yy*dth_x + Q_zz*dth0_x) - t20*(Q_xz*dth0_y
+                    - Q_yz*dth0_x + Q_zx*dth_y - Q_zy*dth_x))
             # differential: force on the modes
             for k in range(MODES, n):
                 dg[k] = 0.0
@@ -315,26 +330,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + 3*j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_x, P_rotation_y, P_rotation_z = P[j3], P[j3 + 1], P[j3 + 2]
+                L_rotation_x, L_rotation_y, L_rotation_z = L[j3], L[j3 + 1], L[j3 + 2]
                 Q_xx, Q_xy, Q_xz, Q_yx, Q_yy, Q_yz, Q_zx, Q_zy, Q_zz = (Q[9*j], Q[9*j + 1],
                     Q[9*j + 2], Q[9*j + 3], Q[9*j + 4], Q[9*j + 5], Q[9*j + 6], Q[9*j + 7],
                     Q[9*j + 8])
                 bdgt_x, bdgt_y, bdgt_z = bdg[j3], bdg[j3 + 1], bdg[j3 + 2]
-                t15 = amplitude*bdgt_x
-                t16 = amplitude*bdgt_y
-                t17 = amplitude*bdgt_z
-                t18 = P_rotation_x*Q_xz + P_rotation_y*Q_yz + P_rotation_z*Q_zz
-                t19 = P_rotation_x*Q_xy + P_rotation_y*Q_yy + P_rotation_z*Q_zy
-                t20 = P_rotation_x*Q_xx + P_rotation_y*Q_yx + P_rotation_z*Q_zx
-                bdth0_x += (-t15*(P_rotation_y*Q_zx - P_rotation_z*Q_yx) - t16*(P_rotation_y*Q_zy
-                    - P_rotation_z*Q_yy) - t17*(P_rotation_y*Q_zz - P_rotation_z*Q_yz))
-                bdth0_y += (-t15*(-P_rotation_x*Q_zx + P_rotation_z*Q_xx) -
-                    t16*(-P_rotation_x*Q_zy + P_rotation_z*Q_xy) - t17*(-P_rotation_x*Q_zz +
-                    P_rotation_z*Q_xz))
-                bdth0_z += (-t15*(P_rotation_x*Q_yx - P_rotation_y*Q_xx) - t16*(P_rotation_x*Q_yy
-                    - P_rotation_y*Q_xy) - t17*(P_rotation_x*Q_yz - P_rotation_y*Q_xz))
-                bdqe[j3] += -t16*t18 + t17*t19
-                bdqe[j3 + 1] += t15*t18 - t17*t20
-                bdqe[j3 + 2] += -t15*t19 + t16*t20
+                t21 = L_rotation_z + P_rotation_z*amplitude
+                t22 = L_rotation_y + P_rotation_y*amplitude
+                t23 = L_rotation_x + P_rotation_x*amplitude
+                t24 = Q_xy*t23 + Q_yy*t22 + Q_zy*t21
+                t25 = Q_xz*t23 + Q_yz*t22 + Q_zz*t21
+                t26 = Q_xx*t23 + Q_yx*t22 + Q_zx*t21
+                bdth0_x += (bdgt_x*(Q_yx*t21 - Q_zx*t22) + bdgt_y*(Q_yy*t21 - Q_zy*t22) +
+                    bdgt_z*(Q_yz*t21 - Q_zz*t22))
+                bdth0_y += (bdgt_x*(-Q_xx*t21 + Q_zx*t23) + bdgt_y*(-Q_xy*t21 + Q_zy*t23) +
+                    bdgt_z*(-Q_xz*t21 + Q_zz*t23))
+                bdth0_z += (bdgt_x*(Q_xx*t22 - Q_yx*t23) + bdgt_y*(Q_xy*t22 - Q_yy*t23) +
+                    bdgt_z*(Q_xz*t22 - Q_yz*t23))
+                bdqe[j3] += -bdgt_y*t25 + bdgt_z*t24
+                bdqe[j3 + 1] += bdgt_x*t25 - bdgt_z*t26
+                bdqe[j3 + 2] += -bdgt_x*t24 + bdgt_y*t26
             # transposed: differential: force on the nodes, left in frame axes
             for i in range(N_POSITIONS):
                 i3 = 3*i
@@ -345,27 +360,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bdth0_z += -bdgx_x*h_y + bdgx_y*h_x
             # transposed: sum w_j X_j x (rate of r_j) = 0
             rhs_x = rhs_y = rhs_z = 0.0
-            t21 = bdth0_x + rhs_x
-            t22 = bdth0_y + rhs_y
-            t23 = bdth0_z + rhs_z
-            mdth0_x = Bxx*t21 + Byx*t22 + Bzx*t23
-            mdth0_y = Bxy*t21 + Byy*t22 + Bzy*t23
-            mdth0_z = Bxz*t21 + Byz*t22 + Bzz*t23
+            t27 = bdth0_x + rhs_x
+            t28 = bdth0_y + rhs_y
+            t29 = bdth0_z + rhs_z
+            mdth0_x = Bxx*t27 + Byx*t28 + Bzx*t29
+            mdth0_y = Bxy*t27 + Byy*t28 + Bzy*t29
+            mdth0_z = Bxz*t27 + Byz*t28 + Bzz*t29
             # transposed: sum w_j X_j x (rate of r_j) = 0
             for i in range(N_POSITIONS):
                 i3 = 3*i
                 fit = fits[i]
                 X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                t24 = fit*mdth0_z
-                t25 = X_y*t24 - X_z*fit*mdth0_y
-                t26 = X_x*t24 - X_z*fit*mdth0_x
-                t27 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
-                bdqe[i3] += t25
-                bdqe[i3 + 1] += -t26
-                bdqe[i3 + 2] += t27
-                bdx0_x += -t25
-                bdx0_y += t26
-                bdx0_z += -t27
+                t30 = fit*mdth0_z
+                t31 = X_y*t30 - X_z*fit*mdth0_y
+                t32 = X_x*t30 - X_z*fit*mdth0_x
+                t33 = X_x*fit*mdth0_y - X_y*fit*mdth0_x
+                bdqe[i3] += t31
+                bdqe[i3 + 1] += -t32
+                bdqe[i3 + 2] += t33
+                bdx0_x += -t31
+                bdx0_y += t32
+                bdx0_z += -t33
             # transposed: origin of the frame, (14)
             for i in range(N_POSITIONS):
                 i3 = 3*i

@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import clear
+from sebody.kernels.dense import clear, columns_times
 from sebody.kernels.frame_search import planar_mean
 
 FRAME = "converged_mean"
@@ -33,6 +33,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -41,8 +43,8 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 13
-OPERATIONS = {"residual": (200, 10, 2, 0),
+WORK_ROWS = 14
+OPERATIONS = {"residual": (200, 12, 3, 0),
               "column": (1, 3, 1, 0)}
 KEPT = 0      # numbers kept between two calls
 
@@ -63,22 +65,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         dqe = at(work, 3*row)
         dve = at(work, 4*row)
         dae = at(work, 5*row)
-        y = at(work, 6*row)
-        h = at(work, 7*row)
-        dg = at(work, 8*row)
-        bdqe = at(work, 9*row)
-        bdve = at(work, 10*row)
-        bdae = at(work, 11*row)
-        bdg = at(work, 12*row)
+        L = at(work, 6*row)
+        y = at(work, 7*row)
+        h = at(work, 8*row)
+        dg = at(work, 9*row)
+        bdqe = at(work, 10*row)
+        bdve = at(work, 11*row)
+        bdae = at(work, 12*row)
+        bdg = at(work, 13*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         P = at(X, 2*N_POSITIONS)
+        columns = at(P, n)
         g = at(forces, element*n)
         vectors = at(matrices, 4*element*n)
         if task == PREPARE:
@@ -86,6 +92,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 qe[i] = q[unknowns[i]]
                 ve[i] = v[unknowns[i]]
                 ae[i] = a[unknowns[i]]
+            # load by the columns of a series
+            columns_times(columns, amplitudes, L, n, series)
             # rotation of the frame: sum alpha_j psi_j = 0
             status = planar_mean(N_ROTATIONS, alpha_rs, at(qe, ROTATIONS), frame, at(y, ROTATIONS))
             if status != 0:
@@ -96,8 +104,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 2*i
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_position_x, P_position_y = P[i3], P[i3 + 1]
-                h[i3] = -P_position_x*amplitude
-                h[i3 + 1] = -P_position_y*amplitude
+                L_position_x, L_position_y = L[i3], L[i3 + 1]
+                h[i3] = -L_position_x - P_position_x*amplitude
+                h[i3 + 1] = -L_position_y - P_position_y*amplitude
             # force on the nodes
             for i in range(N_POSITIONS):
                 i3 = 2*i
@@ -109,12 +118,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_z = P[j3]
-                g[j3] = -P_rotation_z*amplitude
+                L_rotation_z = L[j3]
+                g[j3] = -L_rotation_z - P_rotation_z*amplitude
             # force on the modes
             for k in range(MODES, n):
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_mode = P[k]
-                g[k] = -P_mode*amplitude
+                L_mode = L[k]
+                g[k] = -L_mode - P_mode*amplitude
         if task == ALONG:
             for i in range(n):
                 dqe[i] = vectors[n + i]

@@ -24,7 +24,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import clear
+from sebody.kernels.dense import clear, columns_times
 from sebody.kernels.frame_search import planar_mean_axes
 
 FRAME = "mean_axes"
@@ -34,6 +34,8 @@ N_ROTATIONS = None
 CONSTANTS = FRAME_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
     Part("P", ("n",), "load on the local coordinates, of amplitude one"),
+    Part("columns", ("n", "series"),
+         "loads on the local coordinates by each column of a series", columns=True),
 )
 MULTIPLIERS = 0
 READS = 0
@@ -42,8 +44,8 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 13
-OPERATIONS = {"residual": (201, 28, 3, 0),
+WORK_ROWS = 14
+OPERATIONS = {"residual": (201, 30, 4, 0),
               "column": (2, 9, 2, 0)}
 KEPT = 1      # numbers kept between two calls
 
@@ -65,23 +67,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         dqe = at(work, 4 + 3*row)
         dve = at(work, 4 + 4*row)
         dae = at(work, 4 + 5*row)
-        y = at(work, 4 + 6*row)
-        h = at(work, 4 + 7*row)
-        dg = at(work, 4 + 8*row)
-        bdqe = at(work, 4 + 9*row)
-        bdve = at(work, 4 + 10*row)
-        bdae = at(work, 4 + 11*row)
-        bdg = at(work, 4 + 12*row)
+        L = at(work, 4 + 6*row)
+        y = at(work, 4 + 7*row)
+        h = at(work, 4 + 8*row)
+        dg = at(work, 4 + 9*row)
+        bdqe = at(work, 4 + 10*row)
+        bdve = at(work, 4 + 11*row)
+        bdae = at(work, 4 + 12*row)
+        bdg = at(work, 4 + 13*row)
         first = element*stride
         frame = at(frames, 9*index[first + AT_FRAME])
         nodes = at(index, first + HEADER)
         unknowns = at(nodes, N_ROTATIONS)
+        series = unknowns[n + 1]
+        amplitudes = at(loads, unknowns[n])
         alphas = at(constants, index[first + AT_CONSTANTS])
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         Gam = at(X, 2*N_POSITIONS)
         P = at(Gam, n)
+        columns = at(P, n)
         g = at(forces, element*n)
         vectors = at(matrices, 4*element*n)
         if task == PREPARE:
@@ -89,6 +95,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 qe[i] = q[unknowns[i]]
                 ve[i] = v[unknowns[i]]
                 ae[i] = a[unknowns[i]]
+            # load by the columns of a series
+            columns_times(columns, amplitudes, L, n, series)
             # rotation of the frame: mean axes
             status = planar_mean_axes(N_POSITIONS, N_ROTATIONS, n, alphas, X, Gam, qe, frame,
                 at(y, ROTATIONS))
@@ -100,8 +108,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 i3 = 2*i
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_position_x, P_position_y = P[i3], P[i3 + 1]
-                h[i3] = -P_position_x*amplitude
-                h[i3 + 1] = -P_position_y*amplitude
+                L_position_x, L_position_y = L[i3], L[i3 + 1]
+                h[i3] = -L_position_x - P_position_x*amplitude
+                h[i3 + 1] = -L_position_y - P_position_y*amplitude
             # force on the nodes
             for i in range(N_POSITIONS):
                 i3 = 2*i
@@ -113,12 +122,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 j3 = ROTATIONS + j
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_rotation_z = P[j3]
-                g[j3] = -P_rotation_z*amplitude
+                L_rotation_z = L[j3]
+                g[j3] = -L_rotation_z - P_rotation_z*amplitude
             # force on the modes
             for k in range(MODES, n):
                 amplitude = loads[3*index[first + AT_PORT]]
                 P_mode = P[k]
-                g[k] = -P_mode*amplitude
+                L_mode = L[k]
+                g[k] = -L_mode - P_mode*amplitude
             # origin of the frame, (14)
             x0_x = x0_y = 0.0
             for i in range(N_POSITIONS):

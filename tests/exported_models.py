@@ -6,6 +6,7 @@ import numpy as np
 
 from sebody import Model, Tolerance, plane
 from sebody.fem import Section
+from sebody.io import LoadSeries
 
 SECTION = Section(area=1e-4, inertia_y=2e-9, inertia_z=1e-9, torsion=2e-9, youngs_modulus=7e10,
                   poisson_ratio=0.3, density=2700.0)
@@ -21,7 +22,7 @@ def feedback(t, y, x, u, parameters):
 
 
 def arm() -> Model:
-    """A turned flexible arm on a motor with a controller, a wind by a function, and a floor."""
+    """A turned flexible arm on a motor with a controller, wind, a series of loads, a floor."""
     model = Model(units="m kg N s")
     model.gravity(TURN @ (0.0, -9.81, 0.0))
     shoulder = model.node("the shoulder", TURN @ (0.1, 0.2, 0.0))
@@ -36,6 +37,9 @@ def arm() -> Model:
                 name="a wind")
     model.force(hand, TURN @ (1.0, 0.0, 0.0), [(0.0, 0.0), (0.05, 0.0), (0.05, 1.0), (0.2, 0.4)],
                 name="a pull")
+    model.body_series("upper arm", LoadSeries(
+        [0.0, 0.03, 0.03, 0.1], [[0.0, 0.1], [0.2, 0.1], [0.1, 0.0], [0.3, 0.2]],
+        ["the hand.y", "mode 0"]), name="waves")
     model.contact(hand, on=plane(TURN @ (0.0, 1.0, 0.0), TURN @ (0.0, 0.27, 0.0)), radius=0.02,
                   stiffness=1e5, restitution=0.4, friction=0.3, name="the floor")
     return model

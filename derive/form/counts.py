@@ -28,6 +28,8 @@ damped = Count("damped")            # matrices of damping, or their columns: non
 hn, hN = Count("hn"), Count("hN")   # columns of so many numbers, with their padding
 deep = Count("deep")                # columns of local tangents, which reach to the frame
 
+series = Count("series")            # columns of a series of loads on a body
+
 # indices of loops
 element, column = Count("element"), Count("column")
 i, j, k, b, e, r = map(Count, "ijkber")

@@ -1,9 +1,10 @@
 """A load on a body that turns with the body's frame.
 
 A load on the FE model of a body is reduced to forces on its boundary nodes and modes, ``P = Phi^T
-p``. With the rotation ``R_0`` of the frame and the amplitude a their virtual work is
+p``. A series of loads has columns C_k with amplitudes s_k of its own. With the rotation ``R_0`` of
+the frame, the amplitude a and the whole load ``L = a P + sum_k s_k C_k`` their virtual work is
 
-    a (sum P_i . R_0^T delta x_i + sum P_j . R_0^T delta theta_j + sum P_k delta y_k)
+    sum L_i . R_0^T delta x_i + sum L_j . R_0^T delta theta_j + sum L_k delta y_k
 
 delta theta_j being the variation of a node's rotation in global axes. The forces act on the nodes
 where these are, so in any rigid motion the work is that of the load itself, and no force is left on
@@ -16,10 +17,10 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.contract.layout import Part
-from sebody.derive.form.arrays import Place, constant
-from sebody.derive.form.counts import agreed, first
+from sebody.derive.form.arrays import Place, constant, pointed, scratch
+from sebody.derive.form.counts import agreed, first, n, series
 from sebody.derive.form.spaces import Space
-from sebody.derive.form.steps import Invert, Solve, Stage, Step
+from sebody.derive.form.steps import Invert, Product, Solve, Stage, Step
 from sebody.derive.formulas import arrays
 from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
 from sebody.derive.formulas.inertia.option_a import relative_rotating, relative_rotation
@@ -30,6 +31,10 @@ from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import check_same, differential
 
 LOAD = Part("P", ("n",), "load on the local coordinates, of amplitude one")
+COLUMNS = Part("columns", ("n", "series"), "loads on the local coordinates by each column of a "
+               "series", columns=True)
+AMPLITUDES = pointed("amplitudes", series)      # of the columns
+_BY_COLUMNS = scratch("L")
 
 
 class Steps(NamedTuple):
@@ -47,19 +52,22 @@ def body_load(planar: bool, frame: FrameOption) -> Steps:
     q = Quantities(Space(planar))
     chosen, amplitude = frame.derive(q), _amplitude(q.space)
     on_position, on_rotation, on_mode = (
-        q.space.quantity(f"P_{home}", kind, home, constant(LOAD)).symbols
+        amplitude * q.space.quantity(f"P_{home}", kind, home, constant(LOAD)).symbols
+        + q.space.quantity(f"L_{home}", kind, home, _BY_COLUMNS).symbols
         for kind, home in (("vector", "position"), ("axial", "rotation"), ("scalar", "mode")))
     h, R0 = q.h.symbols, q.R0.symbols
     # an angle in a plane has the same axis in all frames
     turned = on_rotation if planar else q.Q.symbols.T * on_rotation
     relative = () if planar else (relative_rotation(q),)
     on_rotations = Stage("moment on the nodes, material", "rotation",
-                         sets=((q.gt, -amplitude * turned),))
-    on_modes = Stage("force on the modes", "mode", sets=((q.gm, -amplitude * on_mode),))
+                         sets=((q.gt, -turned),))
+    on_modes = Stage("force on the modes", "mode", sets=((q.gm, -on_mode),))
     residual = (
+        Product("load by the columns of a series", constant(COLUMNS), AMPLITUDES, _BY_COLUMNS, n,
+                series),
         *chosen.locate, *relative,
         Stage("force on the nodes in frame axes", "position",
-              sets=((q.h, -amplitude * on_position),)),
+              sets=((q.h, -on_position),)),
         Stage("force on the nodes", "position", sets=((q.gx, R0 * h),)), on_rotations, on_modes)
     inverses = tuple(Invert(step) for step in chosen.velocity if isinstance(step, Solve))
     if frame.traits.needs_rotations:        # the frame turns with rotations alone

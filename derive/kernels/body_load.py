@@ -4,10 +4,14 @@ from typing import NamedTuple
 
 from sebody.contract.layout import FRAME_CONSTANTS, Part
 from sebody.contract.names import body_load_kind
+from sebody.derive.form import counts
 from sebody.derive.form.spaces import Space
+from sebody.derive.form.statements import Let, Point
 from sebody.derive.form.steps import Step
-from sebody.derive.formulas.body_load import LOAD, body_load
+from sebody.derive.formulas import arrays
+from sebody.derive.formulas.body_load import AMPLITUDES, COLUMNS, LOAD, body_load
 from sebody.derive.formulas.frames.frame import FrameOption
+from sebody.derive.kernels.arguments import ARGUMENTS
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
 from sebody.derive.kernels.superelement import opaque_names
@@ -39,7 +43,13 @@ class BodyLoad(NamedTuple):
     @property
     def declared(self) -> tuple[Part, ...]:
         """Constants beyond those of every frame."""
-        return (*self.option.traits.constants, LOAD)
+        return (*self.option.traits.constants, LOAD, COLUMNS)
+
+    @property
+    def behind(self) -> tuple[Let | Point, ...]:
+        """What stands behind the index row: place of the amplitudes of a series, their number."""
+        return (Let((counts.series,), (arrays.unknowns[counts.n + 1],)),
+                Point(AMPLITUDES, ARGUMENTS["loads"].at(arrays.unknowns[counts.n])))
 
 
 def body_load_kernel(name: str) -> BodyLoad:

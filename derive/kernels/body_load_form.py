@@ -51,7 +51,7 @@ def body_load_form(kernel: BodyLoad) -> Kernel:
         Point(MATRIX, ARGUMENTS["matrices"].at(counts.element * n * n)),
         *prepared, columns(planar, DIRECTIONS[:1], tangent)))
     of_element = (
-        *pointers(arrays.reference in used), *chain(kernel.constants, planar, {}),
+        *pointers(arrays.reference in used), *kernel.behind, *chain(kernel.constants, planar, {}),
         Point(arrays.g, ARGUMENTS["forces"].at(counts.element * n)), gathered(STATE[:2]),
         *residual, If(compared(counts.task, "==", agreed("ENERGY")), _power()), matrix)
     body = (Let((n,), (counts.width,)), *read_counts(kernel.layout), row, *memory.points,

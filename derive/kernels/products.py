@@ -80,7 +80,9 @@ def _products(name: str, kernel: Superelement | BodyLoad, lowering: Lowering, n:
     of_element = without_unused((
         Let((counts.n,), (n,)), Let((counts.row,), (row_size(memory.squares, margin),)),
         Point(KEPT, ARGUMENTS["work"]), *_behind(memory, room),
-        *pointers(arrays.reference in used), *chain(kernel.constants, layout.planar, read),
+        *pointers(arrays.reference in used),
+        *(kernel.behind if isinstance(kernel, BodyLoad) else ()), *chain(
+            kernel.constants, layout.planar, read),
         *filled((*common, *along, *back)),
         Point(arrays.g, ARGUMENTS["forces"].at(counts.element * counts.n)),
         Point(VECTORS, ARGUMENTS["matrices"].at(ROWS * (counts.element * counts.n))),

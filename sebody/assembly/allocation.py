@@ -41,6 +41,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, d
     q, v = _start(model, numbering)
     R = _rotations(model, numbering)
     zeros = np.zeros
+    amplitudes = 3 * ports + sum(len(one.series.names) for one in numbering.series)
     acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
     clock, control = _counters(h)
     state = State.of(
@@ -49,7 +50,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, d
         q_start=q.copy(), q_old=q.copy(), R_old=R.copy(), v_old=v.copy(), a_old=zeros(total),
         aux_old=zeros(total), dq=zeros(total), T=_identities(len(R)),
         turns=_turns(system, total),
-        loads=zeros(3 * ports), loads_old=zeros(3 * ports), acting=zeros(acting),
+        loads=zeros(amplitudes), loads_old=zeros(amplitudes), acting=zeros(acting),
         acting_old=zeros(acting), works_old=zeros(ports), powers=zeros(ports),
         powers_old=zeros(ports),
         coefficients=zeros(COEFFICIENTS.size(counts)),

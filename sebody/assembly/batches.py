@@ -7,7 +7,7 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.body_constants import frame_constants, full_rows, superelement_constants
 from sebody.assembly.contracts import (
@@ -187,6 +187,9 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
         behind = [] if element.function is None else [element.function.address]
         if element.point is not None:
             behind = [frames[element.point.body]]
+        if element.body is not None:
+            columns = 0 if element.series is None else len(element.series.names)
+            behind = [numbering.series.get(element, 0), columns]
         modes = 0 if element.body is None else element.body.reduced.modes
         _append(batches, kernel, frame, row + behind, unknowns, element,
                 len(unknowns) - modes)
@@ -218,9 +221,13 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
     body = element.body if element.point is None else element.point.body
     if body is None:
         return constants_row(element.name, kernel, {}, element.constants)
-    of_point = {} if element.point is None else point_constants(element.point)
-    return constants_row(element.name, kernel, counts_of(body),
-                         frame_constants(body) | of_point | dict(element.constants))
+    if element.point is not None:
+        more: dict[str, ArrayLike] = point_constants(element.point)
+    else:
+        more = {"columns": np.zeros((len(body.reduced.mass), 0))}
+    values = frame_constants(body) | more | dict(element.constants)
+    series = np.shape(values["columns"])[1] if element.point is None else 0
+    return constants_row(element.name, kernel, counts_of(body) | {"series": series}, values)
 
 
 def _matrices(numbering: Numbering, element: Element) -> list[int]:

@@ -9,10 +9,11 @@ from sebody.assembly.close_rows import Grid, given_to_steps
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
+from sebody.assembly.grounded import check_grounded
 from sebody.assembly.independent_parts import FEWEST
 from sebody.assembly.links import Ends, link_ends
 from sebody.assembly.numbering import Numbering, number, stretch
-from sebody.assembly.ports import port_arrays
+from sebody.assembly.ports import port_arrays, series_arrays
 from sebody.assembly.structure import Structure, indices
 from sebody.basics.errors import InputError
 from sebody.contract.counts import LANES, scratch_size
@@ -48,6 +49,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
                          "model.rigid_body(...)")
     check_joints(model)
     check_axes(model)
+    check_grounded(model)
     numbering = number(model)
     if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
@@ -55,12 +57,14 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
     time_functions, jumps = given_to_steps(numbering, grid)
-    ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs)
+    ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs,
+                        numbering.series)
     slots = own.system["slot_unknowns"].size
     system = System(
         shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
                          LANES * slots, int(own.system["width"].max()) ** 2),
-        **own.system, **ports, links=Links(arm_vectors=vectors, **own.links),
+        **own.system, **ports, **series_arrays(numbering.series, numbering.ports),
+        links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from sebody.assembly.elimination_order import elimination_order, parents
 from sebody.assembly.memory_map import MemoryMap, memory_map
-from sebody.assembly.ports import number_ports
+from sebody.assembly.ports import number_ports, series_of
 from sebody.basics.errors import InputError
+from sebody.model.histories import of_columns
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
 from sebody.model.time_functions import TimeFunction
@@ -40,11 +41,22 @@ class Numbering(NamedTuple):
     reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
     forced: list[bool] = []             # of every power port: whether it is of a load
+    series: dict[Element, int] = {}     # load -> first amplitude of its series in State.loads
 
     @property
     def memories(self) -> dict[Element, list[int]]:
         """What elements keep: places in `State.frames`."""
         return self.memory.memories
+
+    @property
+    def courses(self) -> list[tuple[str, TimeFunction]]:
+        """Time functions of all power ports, and of the columns of series of loads, with names."""
+        found = list(zip(self.port_names, self.time_functions, strict=True))
+        for load in self.series:
+            assert load.series is not None
+            found += [(f"column {column} of {load.name}", one) for column, one in zip(
+                load.series.names, of_columns(load.series), strict=True)]
+        return found
 
     @property
     def memory(self) -> MemoryMap:
@@ -133,6 +145,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps, forced=ports.forced,
+                     series=series_of(model, len(ports.names)),
                      memory_map=memory_map(model, ports.of), reads=_reads(model, order.multipliers))
 
 

@@ -1,6 +1,6 @@
 """Power ports of a model: where loads, drives and dampers supply or take energy."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import accumulate, pairwise
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import INPUT
-from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL
+from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL, SERIES
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
@@ -54,23 +54,56 @@ def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
     return ports
 
 
+def series_of(model: Mechanism, ports: int) -> dict[Element, int]:
+    """Loads that have a series, and the place of its first amplitude, behind those of all ports."""
+    loads = [load for load in model.loads if load.series is not None]
+    places = accumulate((len(load.series.names) for load in loads), initial=3 * ports)
+    return dict(zip(loads, places, strict=False))
+
+
+def series_arrays(series: Mapping[Element, int], ports: Mapping[Element | Superelement, int]
+                  ) -> dict[str, NDArray]:
+    """The members of `System` for series of loads; `series` has the places of their amplitudes.
+
+    Loads that have one series share its table.
+    """
+    rows, known = [], {}
+    times, values = [np.zeros(0)], [np.zeros(0)]
+    for load, at in series.items():
+        pieces = load.series.pieces
+        if load.series not in known:
+            known[load.series] = sum(map(len, times)), sum(map(len, values))
+            times.append(pieces.times)
+            values.append(pieces.coefficients.ravel())
+        first, place = known[load.series]
+        count, terms, columns = pieces.coefficients.shape
+        rows.append((ports[load], first, count, columns, terms, place, at))
+    return {"series": np.array(rows, dtype=np.int64).reshape(-1, SERIES),
+            "series_times": np.concatenate(times), "series_values": np.concatenate(values)}
+
+
 def _jumps(element: Element) -> list[float]:
     """Times at which an element makes accelerations jump."""
     if element.time_function is None:
         return []
+    if element.series is not None:
+        return [*element.series.pieces.jumps.tolist(), *element.time_function.abrupt(0)]
     if element.function is not None:        # of its corners: what it does there is not known
         return list(element.time_function.corners)
     return element.time_function.abrupt(2 if element.multipliers else 0)
 
 
 def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, int, int, float]],
-                jumps: list[list[float]], inputs: dict[int, int]) -> dict[str, NDArray]:
+                jumps: list[list[float]], inputs: dict[int, int], series: Iterable[Element]
+                ) -> dict[str, NDArray]:
     """The members of `System` for time functions of ports and for prescribed coordinates.
 
-    `inputs` are the places in `State.frames` of ports that are inputs.
+    `inputs` are the places in `State.frames` of ports that are inputs, `series` loads with a
+    series.
     """
     jumping = {t for times in jumps for t in times}
-    corners = sorted(jumping.union(*(_corners(h) for h in time_functions)))
+    corners = sorted(jumping.union(*(_corners(h) for h in time_functions),
+                                   *(one.series.pieces.corners.tolist() for one in series)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in time_functions)],
                                  dtype=np.int64),
             "table_times": np.array([t for h in time_functions for t in h.times], dtype=float),

@@ -1,6 +1,9 @@
 """``sebody import``: a body file from the files of an FE program."""
 
 import argparse
+import sys
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +24,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="a boundary node, may be repeated. WHAT is the label of a node, two "
                              "labels 1/2 where rotations are stored at a second node, rbe2:SET or "
                              "rbe3:SET for a node set or surface, or "
-                             "'cylinder:x,y,z;axis;radius' for a hole")
+                             "'cylinder:x,y,z;axis;radius' for a hole; of a foundation's file, "
+                             "which names no place, X Y Z or NAME=@x,y,z")
+    parser.parse_known_args = partial(_with_places, parser.parse_known_args)
     parser.add_argument("--modes", type=whole, metavar="N",
                         help="number of internal modes (default 0)")
     parser.add_argument("--accuracy", type=real, metavar="E",
@@ -35,6 +40,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "far fewer modes; default with rubin)")
     parser.add_argument("--method", default="craig-bampton", metavar="NAME",
                         help="craig-bampton (default), guyan, macneal or rubin")
+    parser.add_argument("--base", type=real, nargs=3, metavar=("X", "Y", "Z"),
+                        help="of reduced matrices of a structure that is held to the ground: a "
+                             "place of its base")
     parser.add_argument("--format", metavar="NAME", help="format of the files (default: detected)")
     parser.add_argument("--damping", metavar="D[,D...]",
                         help="damping ratio of the free vibration modes: one for all modes, or "
@@ -66,12 +74,13 @@ def run(options: argparse.Namespace) -> int:
 
     check_target(options.output, *TARGET)
     wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,
-                    _damping(options.damping), options.compare_free)
+                    _damping(options.damping), options.compare_free, options.base)
     parsed_units(options.units, "--units")
     watch = Terminal()
     try:
         watch.stage(f"reading {options.file}")
-        file = imported(read_source(options.file, options.format), wanted, options.file, watch)
+        reading = read_source(options.file, options.format)
+        file = imported(reading, wanted, options.file, watch)
     finally:
         watch.close()
     with naming(options.file):
@@ -79,6 +88,10 @@ def run(options: argparse.Namespace) -> int:
     if options.lean:
         file = lean(file)
     write_body_file(file, options.output)
+    series = getattr(reading.model, "series", None)
+    loads = options.output.with_suffix(".csv")
+    if series is not None:
+        series.to_csv(loads)
     summary = body.summary() if body else ""
     for name, text in file.provenance.items():
         if f"{name}: {text}" not in summary:
@@ -88,8 +101,30 @@ def run(options: argparse.Namespace) -> int:
     for text in file.cautions:
         if body is None or text not in body.cautions:
             print(f"caution: {text}")
+    if series is not None:
+        print(f"loads: {loads}, see sebody.io.LoadSeries.from_csv")
     print(f"body: {options.output}, see 'sebody inspect {options.output}'")
     return 0
+
+
+def _with_places(parse: Callable, words: Sequence[str] | None = None, namespace: object = None
+                 ) -> tuple[argparse.Namespace, list[str]]:
+    """Parse arguments whose ``--interface X Y Z`` stand as ``--interface=interface=@X,Y,Z``."""
+    words, made = list(sys.argv[1:] if words is None else words), []
+    while words:
+        word, *words = words
+        if word == "--interface" and len(words) >= 3 and all(map(_is_number, words[:3])):
+            word, words = f"--interface=interface=@{','.join(words[:3])}", words[3:]
+        made.append(word)
+    return parse(made, namespace)
+
+
+def _is_number(word: str) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _modes(options: argparse.Namespace) -> "int | Accuracy":

@@ -7,7 +7,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import C_DAMPING, CLOCK, INPUT, OK, RESIDUAL, VELOCITY
 from sebody.engine.actuator_inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
-from sebody.engine.load_amplitudes import time_function_at
+from sebody.engine.load_amplitudes import set_series, time_function_at
 from sebody.kernels.abi import Arguments, at, call_kernel, called, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 
@@ -49,7 +49,7 @@ def run_part(task, b, first, count, system, state, work):
 
 @compiled(forceinline=True)
 def set_loads(system, kept, loads, t):
-    """Amplitudes of the power ports at a time, and their first two derivatives.
+    """Amplitudes of the power ports at a time, and their first two derivatives; of series of loads.
 
     `kept` is `State.frames`, which holds the inputs.
     """
@@ -76,6 +76,7 @@ def set_loads_beside(system, kept, loads, t, beside):
             loads[3 * k + i] = (_call_function(system.functions[k, i], t + beside)
                                 if system.functions[k, i] != 0 else 0.0)
         loads[3 * k] -= beside * loads[3 * k + 1]       # of a motion, which does not jump
+    set_series(system.series, system.series_times, system.series_values, t, beside, loads)
 
 
 @compiled(forceinline=True)

@@ -9,6 +9,10 @@ from sebody.compiler.decorators import compiled
 POLYNOMIAL = 6
 AMPLITUDE, OMEGA, PHASE = range(POLYNOMIAL, POLYNOMIAL + 3)
 PIECE = POLYNOMIAL + 3
+# numbers of a series of loads: port whose amplitude its columns are multiplied by, first time and
+# number of its pieces, columns, coefficients of a piece, place of the first coefficient, and of the
+# first amplitude in `State.loads`
+SERIES = 7
 
 
 @compiled
@@ -32,6 +36,33 @@ def time_function_at(times, pieces, first, last, t, beside, out, at):
         add_harmonic(pieces, i, x, out, at)
     if t + beside < times[first]:
         out[at + 1], out[at + 2] = 0.0, 0.0
+
+
+@compiled
+def set_series(series, times, values, t, beside, loads):
+    """Amplitudes of the columns of all series at t, by one search for each; see `time_function_at`.
+
+    Coefficients of a piece are powers of the time since it began, column after column for each.
+    """
+    for k in range(series.shape[0]):
+        port, first, pieces, columns, terms, place, at = (
+            series[k, 0], series[k, 1], series[k, 2], series[k, 3], series[k, 4], series[k, 5],
+            series[k, 6])
+        i, end = first, first + pieces - 1
+        while i < end:
+            middle = (i + end + 1) // 2
+            if times[middle] <= t + beside:
+                i = middle
+            else:
+                end = middle - 1
+        x = max(t - times[i], 0.0)
+        begin = place + (i - first) * columns * terms
+        factor = loads[3 * port]
+        for c in range(columns):
+            total = 0.0
+            for power in range(terms - 1, -1, -1):
+                total = total * x + values[begin + power * columns + c]
+            loads[at + c] = factor * total
 
 
 @compiled

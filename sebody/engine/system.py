@@ -87,6 +87,9 @@ class System(Arrays):
                         CLOCK where it is the time itself
     corners             times at which a time function has a corner, ascending
     jumps               1 for those of them at which accelerations jump
+    series              (k, SERIES) series of loads, see `sebody.engine.load_amplitudes`
+    series_times        times of their pieces, ascending in each
+    series_values       coefficients of their pieces
     prescribed          (k, 3) coordinate, port, 1 for rotations
     prescribed_factor   (k,) motion of the coordinate by that of the port
     ------------------  ----------------------------------------------------------------------------
@@ -152,6 +155,9 @@ class System(Arrays):
     corners: NDArray
     jumps: NDArray
     functions: NDArray
+    series: NDArray
+    series_times: NDArray
+    series_values: NDArray
     prescribed: NDArray
     prescribed_factor: NDArray
     links: Links

@@ -66,8 +66,8 @@ def line_load(model: FEModel, vector: ArrayLike,
 
     Parameters
     ----------
-    vector : (3,), planar (2,)
-        Force by length in FE axes [force/length].
+    vector : (3,) or (n_nodes, 3), planar (2,) or (n_nodes, 2)
+        Force by length in FE axes [force/length]; at every node, linear between them.
     nodes : str or iterable of int, optional
         Beams between these nodes alone; all by default.
 
@@ -77,7 +77,9 @@ def line_load(model: FEModel, vector: ArrayLike,
         As for `pressure`, or a model without beams.
     """
     dimension = model.coordinates.shape[1]
-    vector = inputs.vector(vector, "line load", dimension)
+    by_node = inputs.array(vector, "line load", (len(model.coordinates), dimension)
+                           if np.ndim(vector) == 2 else (dimension,))
+    by_node = np.broadcast_to(by_node, model.coordinates.shape)
     inside = np.ones(len(model.coordinates), dtype=bool)
     if nodes is not None:
         inside[:] = False
@@ -90,12 +92,13 @@ def line_load(model: FEModel, vector: ArrayLike,
                          "nodes at both ends of each")
     along = model.coordinates[pairs[:, 1]] - model.coordinates[pairs[:, 0]]
     lengths = np.linalg.norm(along, axis=1)
+    first, last = by_node[pairs[:, 0]], by_node[pairs[:, 1]]
     result = np.zeros(model.stiffness.shape[0])
-    moments = (along[:, 0] * vector[1] - along[:, 1] * vector[0] if dimension == 2 else
-               np.cross(along, vector)) * (lengths / 12).reshape(-1, *[1] * (dimension - 2))
-    for nodes_of, sign in zip(pairs.T, (1.0, -1.0), strict=True):
-        for node, length, moment in zip(nodes_of, lengths, moments, strict=True):
-            result[model.dofs(int(node), "translation")] += vector * length / 2
+    for nodes_of, near, far, sign in zip(pairs.T, (first, last), (last, first), (1.0, -1.0),
+                                         strict=True):
+        forces, moments = _at_end(along, lengths, near, far)
+        for node, force, moment in zip(nodes_of, forces, moments, strict=True):
+            result[model.dofs(int(node), "translation")] += force
             result[model.dofs(int(node), "rotation")] += sign * moment
     return result
 
@@ -154,6 +157,28 @@ def _on_faces(model: FEModel, nodes: str | Iterable[int], what: str,
         forces = np.einsum("ga,fgd->fad", values, by_point)
         np.add.at(result, model.rows[faces, :dimension].reshape(-1), forces.reshape(-1))
     return result
+
+
+def _at_end(along: NDArray, lengths: NDArray, near: NDArray, far: NDArray
+            ) -> tuple[NDArray, NDArray]:
+    """Forces and moments of clamped beams at their ends, under loads that are linear along them.
+
+    Parameters
+    ----------
+    along : (k, D)
+        From end to end [length].
+    lengths : (k,)
+    near, far : (k, D)
+        Forces by length at this end and at the other one.
+    """
+    unit, size = along / lengths[:, None], lengths[:, None]
+    axial, of_far = (np.einsum("ki,ki->k", one, unit)[:, None] * unit for one in (near, far))
+    forces = (size / 6 * (2 * axial + of_far)
+              + size / 20 * (7 * (near - axial) + 3 * (far - of_far)))
+    mean = size / 60 * (3 * near + 2 * far)
+    if along.shape[1] == 2:
+        return forces, along[:, 0] * mean[:, 1] - along[:, 1] * mean[:, 0]
+    return forces, np.cross(along, mean)
 
 
 def _nodes(model: FEModel, nodes: str | Iterable[int], what: str) -> list[int]:

@@ -53,7 +53,8 @@ class OfTable:
 def port_of(model: Model, run: Simulation, column: Column) -> int | None:
     """The power port of a load whose table or amplitude a column is of; None of anything else."""
     load = _load(model, column)
-    if load is None or (column.name.endswith(AMPLITUDE) and not column.handle.base):
+    if load is None or load.series is not None or (
+            column.name.endswith(AMPLITUDE) and not column.handle.base):
         return None
     return run.numbering.ports.get(load)
 

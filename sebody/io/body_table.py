@@ -90,6 +90,9 @@ def _check_notes(table: Table, notes: dict) -> None:
     modes = body.get("modes", 0)
     if type(modes) is not int or modes < 0:
         raise table.fault(f"has {inputs.shown(modes)} for its number of modes")
+    base = body.get("base")
+    if base is not None and (type(base) is not int or not 0 <= base < len(keeps)):
+        raise table.fault(f"has {inputs.shown(base)} for the node of its base")
     checked_missing(body.get("missing", {}), f"{table.file}: missing")
     checked_materials(body.get("materials", []), f"{table.file}: materials")
     parsed_units(notes["units"], f"{table.file}: units")

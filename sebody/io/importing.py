@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
 from sebody.basics import inputs
@@ -17,6 +17,7 @@ from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
 from sebody.io.damping import with_damping
+from sebody.io.held import HeldBody
 from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.reading import Reading
@@ -26,6 +27,7 @@ from sebody.io.rigid import rigid_residual
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.free import Resisted
+from sebody.reduction.grounded import grounded_body
 from sebody.reduction.methods import free_frequencies, reduce
 from sebody.reduction.watch import SILENT, Watch, watching
 
@@ -53,7 +55,7 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
 
 def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable[str] = (),
                 modes: int | Accuracy = 0, method: str = "craig-bampton", *,
-                kind: str | None = None, units: str = "",
+                kind: str | None = None, units: str = "", base: ArrayLike | None = None,
                 damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
                 compare_free: bool = False,
                 progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
@@ -66,7 +68,8 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     interfaces : dict of texts by name, or texts ``name=...``
         Boundary nodes in order: the label of a node, two labels ``"1/2"`` where rotations have a
         node of their own, ``"rbe2:SET"`` and ``"rbe3:SET"`` for named sets and surfaces, or
-        ``"cylinder:x,y,z;axis;radius"`` for a hole. Of files with reduced matrices their own
+        ``"cylinder:x,y,z;axis;radius"`` for a hole; ``"@x,y,z"`` for the place of an interface that
+        the file of a foundation does not name. Of files with reduced matrices their own
         boundary nodes, all of them and in their order by default.
     modes : int or Accuracy
         Number of internal modes, or what they are to achieve.
@@ -76,6 +79,9 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         Name of the source, see `SOURCES`; guessed from the files by default.
     units : str
         Units of the numbers, such as ``mm t N s``.
+    base : (3,), optional
+        Of files with reduced matrices of a structure whose base is held: a place of this base
+        [length], see `sebody.reduction.grounded_body`.
     damping : float or sequence of float
         Part of critical damping of the free vibration modes: of all, or of each from the lowest
         up, the last number also of those beyond.
@@ -99,7 +105,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         check_target(output, *TARGET)
     watch = watching(progress)
     wanted = Wanted(parsed(interfaces), modes, method, units, damping,
-                    inputs.flag(compare_free, "compare_free"))
+                    inputs.flag(compare_free, "compare_free"), base)
     watch.stage(f"reading {path}")
     file = imported(read_source(path, kind), wanted, path, watch)
     with naming(path):
@@ -118,6 +124,7 @@ class Wanted(NamedTuple):
     units: str = ""
     damping: float | Sequence[float] = 0.0
     compare_free: bool = False
+    base: ArrayLike | None = None
 
 
 def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
@@ -125,7 +132,11 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     """What is to be written of a reading."""
     model, units = reading.model, str(parsed_units(wanted.units) or "")
     if not isinstance(model, FEModel):
-        return _damped(_reduced(reading, wanted.interfaces, wanted.modes, units), wanted.damping)
+        return _damped(_grounded(_reduced(reading, wanted.interfaces, wanted.modes, units),
+                                 wanted.base), wanted.damping)
+    if wanted.base is not None:
+        raise InputError(f"base is given, and {path} holds a whole FE model: import it free, with "
+                         "the base as an interface")
     interfaces, method = wanted.interfaces, wanted.method
     boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
@@ -189,6 +200,8 @@ def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accurac
     provenance = {"source": reading.source, "method": "reduced by the FE program", **reading.notes,
                   **{f"interface {one.name}": f"node {one.nodes[0]}" for one in interfaces
                      if one.nodes and str(one.nodes[0]) != one.name}}
+    if isinstance(reading.model, HeldBody):
+        return _held(reading.model, interfaces, units, provenance)
     modal = isinstance(reading.model, ModalBody)
     for one in interfaces:
         if len(one.nodes) != 1 or (one.keeps and not modal):
@@ -203,3 +216,35 @@ def _reduced(reading: Reading, interfaces: list[Interface], modes: int | Accurac
         return BodyFile(parts, names, units, {**provenance, **notes})
     return chosen_interfaces(BodyFile(reading.model, reading.names, units, provenance), labels,
                              names)
+
+
+def _grounded(file: BodyFile, base: ArrayLike | None) -> BodyFile:
+    """The body of matrices whose base is held, where its place is given."""
+    if base is None:
+        return file
+    parts = file.parts
+    if parts.get("base") is not None:
+        raise InputError("base is given twice: the file is of a body that is held already, leave "
+                         "it out")
+    body = grounded_body(*(parts[name] for name in ("stiffness", "mass", "coordinates", "keeps",
+                                                    "modes")), parts.get("damping"), base,
+                         units=file.units)
+    return replace(file, parts={**body_parts(body), "missing": parts.get("missing", {})},
+                   names=(*file.names, "base"))
+
+
+def _held(model: HeldBody, interfaces: list[Interface], units: str, provenance: dict[str, str]
+          ) -> BodyFile:
+    """A body held to the ground with its interface at a place that is given."""
+    points = [one for one in interfaces if one.point and not one.tie]
+    if len(points) != 1 or len(interfaces) != 1:
+        raise InputError(f"{model.path} does not say where its interface is: give its place, one "
+                         "interface name=@x,y,z, on the command line --interface X Y Z")
+    if units not in ("", model.units):
+        raise InputError(f"units are {units}, and {model.path} is in {model.units}: leave units "
+                         "out")
+    one = points[0]
+    body = model.body(one.point)
+    if model.series is not None:
+        provenance = {**provenance, "loads": f"{model.series!r}: give them by Model.body_series"}
+    return BodyFile(body_parts(body), (one.name, "base"), model.units, provenance)

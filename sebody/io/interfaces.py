@@ -17,7 +17,8 @@ from sebody.reduction.interfaces import MeanFace, RigidFace
 REMEDY = ("write name=NODE, name=NODE/NODE where rotations have their own node, name=rbe2:SET, "
           "name=rbe3:SET (by area) or name=rbe3-equal:SET of a node set or surface, "
           "name=cylinder:x,y,z;axis;radius of a hole or a journal; with @x,y,z, the reference "
-          "point if that is not the middle, and :translation or :rotation to keep these alone")
+          "point if that is not the middle, and :translation or :rotation to keep these alone; of "
+          "a file that names no places name=@x,y,z")
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _SHOWN = 5      # nodes left out that a note names
 
@@ -44,7 +45,8 @@ class Interface(NamedTuple):
     ----------
     name : str
     nodes : tuple of int
-        Label of a node, or of two: that of the translations and that of the rotations.
+        Label of a node, or of two: that of the translations and that of the rotations; none, nor a
+        set, of a body whose file does not say where its interface is.
     tie : str
         'rbe2', 'rbe3' or 'rbe3-equal' for a set or a cylinder, else empty.
     node_set : str
@@ -52,7 +54,7 @@ class Interface(NamedTuple):
     cylinder : Round, optional
         Whose faces are tied, to its point.
     point : tuple of float
-        Reference point of a set; the middle of its faces if empty.
+        Reference point of a set, the middle of its faces if empty; or the place of the interface.
     keeps : str
         Triplets kept; those that the node has if empty.
     """
@@ -108,18 +110,28 @@ def _one(name: str, text: str) -> Interface:
         first, second, keeps = match.groups()
         nodes = (int(first),) if second is None else (int(first), int(second))
         return Interface(name, nodes, keeps=_keeps(name, text, keeps))
+    if match := re.fullmatch(r"@([^@:]+)", text):
+        return Interface(name, point=_place(name, text, match[1]))
     what = r"cylinder:([^@:]+)|([^@:]+)"
     match = re.fullmatch(rf"(?:(rbe2|rbe3|rbe3-equal):)?(?:{what})(?:@([^@:]+))?(?::(\w+))?", text)
     if not match or not (match[1] or match[2]):
         raise inputs.refusal(f"interface {name!r}", text, REMEDY)
     tie, cylinder, node_set, place, keeps = match.groups()
+    point = _place(name, text, place) if place else ()
     try:
-        point = tuple(map(float, place.split(","))) if place else ()
         where = _round(cylinder) if cylinder else None
     except ValueError as error:
         raise inputs.refusal(f"interface {name!r}", text, REMEDY) from error
     return Interface(name, (), tie or "rbe2", (node_set or "").strip(), where, point,
                      _keeps(name, text, keeps))
+
+
+def _place(name: str, text: str, place: str) -> tuple[float, ...]:
+    """A point ``x,y,z``."""
+    try:
+        return tuple(map(float, place.split(",")))
+    except ValueError as error:
+        raise inputs.refusal(f"interface {name!r}", text, REMEDY) from error
 
 
 def _round(text: str) -> Round:
@@ -162,6 +174,8 @@ def tied(model: FEModel, interfaces: list[Interface], rotation_nodes: Mapping[in
         raise InputError(f"the body has no interface: {REMEDY}")
     items, notes = [], {}
     for one in interfaces:
+        if not one.nodes and not one.tie:
+            raise InputError(f"interface {one.name!r} is a place, and the file has nodes: {REMEDY}")
         try:
             item, note = _face(model, one) if one.tie else (_node(model, one, rotation_nodes), "")
         except InputError as error:

@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sebody.fem.model import FEModel
+from sebody.io.held import HeldBody
 from sebody.io.modal import ModalBody
 
 
@@ -13,9 +14,10 @@ class Reading(NamedTuple):
 
     Parameters
     ----------
-    model : FEModel, dict or ModalBody
-        An FE model, the arguments of the `ReducedBody` that the program has made, or a body of
-        rigid motions and modes, whose boundary is still to be chosen.
+    model : FEModel, dict, ModalBody or HeldBody
+        An FE model, the arguments of the `ReducedBody` that the program has made, a body of
+        rigid motions and modes, whose boundary is still to be chosen, or one that is held to the
+        ground, whose interface has no place yet.
     names : tuple of str
         Of the boundary nodes of a reduced body: the labels of the FE program.
     rotation_nodes : dict of label by label
@@ -30,7 +32,7 @@ class Reading(NamedTuple):
         Cards of the deck that may prestress the body, or turn rows.
     """
 
-    model: FEModel | dict | ModalBody
+    model: FEModel | dict | ModalBody | HeldBody
     names: tuple[str, ...] = ()
     rotation_nodes: Mapping[int, int] = MappingProxyType({})
     source: str = ""

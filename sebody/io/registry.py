@@ -10,7 +10,7 @@ from typing import NamedTuple
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files.reading import existing
-from sebody.io import abaqus, ansys, calculix, matrix_market, nastran, sid
+from sebody.io import abaqus, ansys, calculix, extptfm, matrix_market, nastran, sid
 from sebody.io.reading import Reading
 from sebody.io.text import read_text
 
@@ -64,6 +64,8 @@ SOURCES = (
     Source("nastran-dmig", (".pch", ".op2"), nastran.read_dmig,
            "DMIG in a punch or OP2 file with GRID cards; reduced already", needs="pyyeti",
            extra="nastran"),
+    Source("extptfm", (".dat",), extptfm.read,
+           "OpenFAST's ExtPtfm, FlexASCII or GuyanASCII; reduced already, held to the ground"),
     Source("sid", (".sid_fem", ".sid"), sid.read,
            "Standard Input Data, where its modes span the motions of the nodes"),
 )

@@ -145,6 +145,17 @@ def part_bodies(model: Mechanism, beam: Beam, section: AnySection,
     return bodies
 
 
+def part_models(model: Mechanism, beam: Beam) -> list[tuple[FEModel, NDArray]]:
+    """FE models of a beam's superelements along x, and rotations from their axes to the model's."""
+    count = len(beam.parts)
+    made = []
+    for k, span in enumerate(pairwise(beam.nodes)):
+        turn, length = _line(model, span, beam.options["up"])
+        part = part_of(beam.section, k / count, (k + 1) / count)
+        made.append((_fe_model(model.planar, length, part, beam.elements // count), np.array(turn)))
+    return made
+
+
 def part_shapes(model: Mechanism, beam: Beam, section: AnySection) -> list[NDArray]:
     """Vibration modes of a beam's superelements with a section, along their own axes."""
     count, each = len(beam.parts), beam.elements // len(beam.parts)

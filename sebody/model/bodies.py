@@ -15,7 +15,13 @@ from sebody.contract.counts import layout_name
 from sebody.io.body_file import load_body
 from sebody.kernels.loader import superelement_kernel_name
 from sebody.model.arguments import dof_block, known, refuse_taken, vector
-from sebody.model.frames import check_frame, default_frame, frame_weights, known_frame
+from sebody.model.frames import (
+    check_base_frame,
+    check_frame,
+    default_frame,
+    frame_weights,
+    known_frame,
+)
 from sebody.model.inertias import (
     chosen_inertia,
     known_inertia,
@@ -31,7 +37,7 @@ from sebody.reduction.summary import place
 def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
                  nodes: Iterable[Node | str], frame: str | None = None,
                  inertia: str | None = None, rotation: ArrayLike | None = None,
-                 frame_node: int = 0, stiffening: bool | None = None) -> Superelement:
+                 frame_node: int | None = None, stiffening: bool | None = None) -> Superelement:
     """Place a reduced body on nodes.
 
     Parameters
@@ -44,7 +50,8 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         By default the rotation of best fit of the positions, 'positions', for bodies with inertia
         'floating_field' and three or more positions that are not nearly on a line; mean axes,
         'mean_axes', for others of this inertia whose mass is off the line of their nodes; else the
-        mean of the nodes' rotations, 'converged_mean'.
+        mean of the nodes' rotations, 'converged_mean'. Of a body held to the ground 'node', with
+        the frame on its base.
     inertia : {'frame_axes', 'material', 'floating_field', 'rigid_part'}, optional
         Or their letters 'a', 'b', 'c', 'd'; a and b are those of Cardona (2000). By default
         'floating_field', the velocities of the whole displacement field, for bodies that have it:
@@ -54,8 +61,9 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         velocities from the boundary nodes.
     rotation : (3, 3), planar (2, 2), optional
         Rotates vectors from FE axes to global axes; identity by default.
-    frame_node : int
-        For ``frame='node'``: which boundary node carries the frame.
+    frame_node : int, optional
+        For ``frame='node'``: which boundary node carries the frame; by default the first, of a body
+        held to the ground its base.
     stiffening : bool, optional
         Whether the body stiffens or softens with the stresses in it, with inertia
         'floating_field'; by default
@@ -85,9 +93,12 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
     placed = body if rotation is None else body.rotated(rotation)
     inertia = known_inertia(inertia)
     if frame is None:
-        frame = default_frame(placed, inertia)
+        frame = "node" if placed.base is not None else default_frame(placed, inertia)
+    if frame_node is None:
+        frame_node = placed.base or 0
     own = known_frame(frame)
     _check_place(name, placed, own_nodes)
+    check_base_frame(name, placed, frame, frame_node)
     check_frame(name, placed, frame)
     inertia, stiffening = chosen_inertia(name, placed, frame, inertia, stiffening)
     alpha, alpha_r = frame_weights(name, placed, frame, frame_node)

@@ -86,6 +86,19 @@ def mass_off_line(body: ReducedBody) -> bool:
     return bool(turned > CROOKED * (np.trace(J) - about) / 2 or about > (OFF_LINE * length)**2)
 
 
+def check_base_frame(name: str, body: ReducedBody, frame: str, node: int) -> None:
+    """Refuse a frame that moves against the base of a body without coupling with its base.
+
+    Local coordinates are then not those that its mass is of.
+    """
+    if body.rests and not (FRAMES[frame].on_one_node and node == body.base):
+        raise InputError(f"superelement {name!r} is held to the ground without inertial coupling "
+                         "with its base, so its mass is that of motions relative to its base, and "
+                         f"the frame {frame!r} would give wrong frequencies (of a tower by a "
+                         f"third): use frame='node' with frame_node={body.base}, as "
+                         "model.foundation does, or give grounded_body coupling= and rigid_mass=")
+
+
 def check_frame(name: str, body: ReducedBody, frame: str) -> None:
     """Refuse a frame that the kept DOF blocks cannot define."""
     traits = FRAMES[frame].traits

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
+from sebody.io.load_series import LoadSeries
 from sebody.model.functions import compiled_history
 from sebody.model.history_rows import linear, table
 from sebody.model.time_functions import LOAD, TimeFunction
@@ -98,6 +99,14 @@ def spline_of(times: NDArray, values: NDArray, rates: tuple[float, float]) -> Ti
 
     spline = CubicSpline(times, values, bc_type=((1, rates[0]), (1, rates[1])))
     return of_cubics(times, spline.c, values[-1])
+
+
+def of_columns(series: LoadSeries) -> list[TimeFunction]:
+    """Time functions of the columns of a series of loads."""
+    pieces = series.pieces
+    times, corners = tuple(pieces.times.tolist()), tuple(pieces.corners.tolist())
+    return [TimeFunction(times, tuple(map(tuple, own.tolist())), corners=corners)
+            for own in pieces.coefficients.transpose(2, 0, 1)]
 
 
 def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunction:

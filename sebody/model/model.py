@@ -14,12 +14,14 @@ from sebody.model import (
     contacts,
     controllers,
     drives,
+    foundations,
     frictions,
     gears,
     joints,
     loads,
     nodes,
     sensors,
+    series,
     springs,
 )
 from sebody.model.atomic import atomic
@@ -64,6 +66,7 @@ class Model(Mechanism):
     rigid_velocity = atomic(nodes.rigid_velocity)
 
     superelement = atomic(bodies.superelement)
+    foundation = atomic(foundations.foundation)
     rigid_body = atomic(bodies.rigid_body)
     point_mass = atomic(bodies.point_mass)
     beam = atomic(beams.beam)
@@ -87,6 +90,8 @@ class Model(Mechanism):
     torque = atomic(loads.torque)
     mode_force = atomic(loads.mode_force)
     body_load = atomic(loads.body_load)
+    body_series = atomic(series.body_series)
+    beam_series = atomic(series.beam_series)
     user_force = atomic(loads.user_force)
     gravity = atomic(loads.gravity)
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody.basics.tabular import counted, vector
 from sebody.compiler.user_functions import UserFunction
 from sebody.fem.section import AnySection
+from sebody.io.load_series import LoadSeries
 from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
@@ -191,6 +192,7 @@ class Element:
     point: BodyPoint | None = None  # of a contact; the body's coordinates come first
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     law: LawParts | None = None             # of a continuous controller
+    series: LoadSeries | None = None    # of a load on a body: of the columns of its loads
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
     dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 

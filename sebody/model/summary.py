@@ -129,6 +129,7 @@ def _loads(model: Mechanism) -> list[tuple]:
     return [(load.name, _plain(load),
              _named({place.node.name: place.node for place in load.attachments}.values())
              or (load.mode[0] if load.mode else ""),
+             load.series.described() if load.series is not None else
              load.time_function.described() if load.time_function and load.function is None else "")
             for load in model.loads if load.law is None]
 

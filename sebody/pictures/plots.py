@@ -24,6 +24,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 INSTANTS = 9            # at which the bodies are drawn
 STATES = 200            # at most, by which the size of contact surfaces is chosen
 MOST_TICKS = 5          # of the longest axis of a path
+THIN = 0.35     # least side of a picture in space, relative to the longest: room for axes of a mast
 FLAT = 0.03             # share of the motion below which motion out of the plane is not drawn
 INK, ACCENT, PALE = "#1f2a44", "#c8452d", "#9aa5b8"
 COMPONENTS = tuple(zip(AXES, "xyz", strict=True))
@@ -170,11 +171,15 @@ def _draw_path(figure, result: Result, tip: str) -> None:
         axes.plot(*touched[:, :size].T, color=CONTACT, linewidth=0.8, zorder=1,
                   label="contact surfaces")
     axes.plot(*path[:1, :size].T, "o", color=ACCENT, markersize=3, zorder=5)
+    for name in () if flat else "xyz":
+        low, high = getattr(axes, f"get_{name}lim")()
+        half = max(high - low, THIN * extent.max()) / 2
+        getattr(axes, f"set_{name}lim")((low + high) / 2 - half, (low + high) / 2 + half)
     axes.set_aspect("equal", adjustable="datalim" if flat else "box")
     for name in "xyz"[:size]:
         getattr(axes, f"set_{name}label")(with_unit(name, f"{tip}.position", result.units))
         _thin_ticks(axes, name, extent[:size].max())
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12 if flat else -0.05), ncols=3)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
 
 
 def _thin_ticks(axes, name: str, largest: float) -> None:

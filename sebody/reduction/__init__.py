@@ -1,11 +1,14 @@
 """From an FE model to a superelement: reduced matrices, their checks and frame weights."""
 
 from sebody.reduction.accuracy import Accuracy
+from sebody.reduction.appendage import appendage
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.component import ComponentModes
 from sebody.reduction.craig_bampton import component_modes, craig_bampton
+from sebody.reduction.grounded import grounded_body
 from sebody.reduction.interfaces import MeanFace, RigidFace
 from sebody.reduction.methods import free_frequencies, reduce
+from sebody.reduction.self_weight import grounded_from_fe, self_weight_stiffness
 from sebody.reduction.weights import body_weights, frame_weights
 
 __all__ = [
@@ -14,10 +17,14 @@ __all__ = [
     "MeanFace",
     "ReducedBody",
     "RigidFace",
+    "appendage",
     "body_weights",
     "component_modes",
     "craig_bampton",
     "frame_weights",
     "free_frequencies",
+    "grounded_body",
+    "grounded_from_fe",
     "reduce",
+    "self_weight_stiffness",
 ]

@@ -78,6 +78,8 @@ class ReducedBody:
         What it is made of.
     units : str
         Units of its numbers, such as ``mm t N s``; empty if they are not known.
+    base : int, optional
+        Boundary node that is the base of a body held to the ground, see `grounded_body`.
 
     Raises
     ------
@@ -100,6 +102,7 @@ class ReducedBody:
     materials: tuple[Material, ...] = ()
     units: str = ""
     outputs: Mapping[str, NDArray] = field(default_factory=dict)
+    base: int | None = None
     # of a rotated body what it was made of, and the rotation; `replace` does not take it over
     _made_of: tuple[ReducedBody, NDArray] | None = field(default=None, init=False, repr=False)
 
@@ -114,6 +117,8 @@ class ReducedBody:
             raise inputs.refusal("modes", self.modes, f"the stiffness has {rows[0]} rows in all, "
                                  "give fewer")
         names = checks.coordinate_names(keeps, coordinates.shape[1], self.modes)
+        if self.base is not None:
+            checks.check_base(self.base, keeps)
         self._store("coordinates", coordinates)
         object.__setattr__(self, "keeps", keeps)
         remedy = "give a list of texts"
@@ -169,6 +174,22 @@ class ReducedBody:
         return tuple(i for i, keep in enumerate(self.keeps) if keep != "translation")
 
     @cached_property
+    def rests(self) -> bool:
+        """Whether its base must stay at rest: it is held and has no coupling with its base."""
+        if self.base is None:
+            return False
+        at = [*self._rows_of("position", self.base), *self._rows_of("rotation", self.base)]
+        return not self.mass[at].any()
+
+    def _rows_of(self, kind: str, node: int) -> range:
+        """Reduced coordinates of a DOF block of a boundary node that keeps it."""
+        d, r = (2, 1) if self.planar else (3, 3)
+        if kind == "position":
+            return range(first := d * self.position_nodes.index(node), first + d)
+        first = d * len(self.position_nodes) + r * self.rotation_nodes.index(node)
+        return range(first, first + r)
+
+    @cached_property
     def rigid_modes(self) -> NDArray:
         """Unit rigid translations and rotations about the FE origin, (n, 6), planar (n, 3)."""
         return _read_only(self.rigid_modes_about(np.zeros(self.coordinates.shape[1])))
@@ -220,7 +241,8 @@ class ReducedBody:
         return "\n".join([
             f"{nodes} boundary node{'s' * (nodes > 1)}, {n - self.modes} boundary coordinates, "
             f"{self.modes} internal modes",
-            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}",
+            f"mass {self.total_mass:.6g}, centre of mass {place(centre)}"
+            + " (of motions relative to the base alone)" * self.rests,
             *(f"boundary node {k} at {place(point)} keeps {keep!r}"
               for k, (point, keep) in enumerate(kept)),
             *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),

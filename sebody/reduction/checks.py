@@ -20,6 +20,9 @@ NEGATIVE_MASS_LIMIT = 1e-8
 NEGATIVE_STIFFNESS_LIMIT = 1e-6
 RIGID_LIMIT = 1e-6
 _DIGITS = 1e-4      # residual of rigid motion that few printed digits may leave
+HELD_LIMIT = 1e-2       # residual of rigid motions from which on a body is held, not rounded
+_HELD = ("if the body is held to the ground: use grounded_body, or import the FE model free with "
+         "the base as an interface; else ")
 
 
 def check_layout(coordinates: NDArray, keeps: tuple[str, ...]) -> None:
@@ -44,6 +47,15 @@ def check_layout(coordinates: NDArray, keeps: tuple[str, ...]) -> None:
             "no boundary node keeps its position, so the body's place is undefined; "
             "keep 'full' or 'translation' at one node at least"
         )
+
+
+def check_base(base: object, keeps: tuple[str, ...]) -> None:
+    """Raise InputError unless the base of a held body is a boundary node that keeps everything."""
+    node = inputs.integer(base, "base", least=0, most=len(keeps) - 1,
+                          remedy=f"give a boundary node, from 0 to {len(keeps) - 1}")
+    if keeps[node] != "full":
+        raise InputError(f"base is boundary node {node}, which keeps {keeps[node]!r}: the base of "
+                         "a body held to the ground keeps position and rotation, 'full'")
 
 
 def coordinate_names(keeps: tuple[str, ...], dimension: int, modes: int,
@@ -125,14 +137,38 @@ def check_stiffness(stiffness: NDArray, rigid: NDArray, names: list[str]) -> Non
     if residual > RIGID_LIMIT:
         raise InputError(
             f"stiffness resists rigid motion: |K R| is {residual:.2e} of |K| |R| (limit "
-            f"{RIGID_LIMIT:.0e}), worst in row {row} ({names[row]}); {why_resisted(residual)}"
+            f"{RIGID_LIMIT:.0e}), worst in row {row} ({names[row]}); "
+            + _HELD * (residual > HELD_LIMIT) + why_resisted(residual)
         )
-    value, row = _lowest(stiffness, names)
+    check_positive(stiffness, "stiffness", names)
+
+
+def check_held(stiffness: NDArray, rigid: NDArray, names: list[str]) -> None:
+    """Raise InputError unless a stiffness holds a body whose base is held.
+
+    Parameters
+    ----------
+    stiffness : (n, n)
+    rigid : (n, 6), planar (n, 3)
+        Motions of the coordinates in rigid motions of the base.
+    names : list of str
+        Of the coordinates.
+    """
+    residual, _ = rigid_residual(stiffness, rigid, names)
+    if residual < RIGID_LIMIT:
+        raise InputError("stiffness does not resist rigid motion of the interfaces, so the "
+                         "matrices are not of a body that is held to the ground: use ReducedBody, "
+                         "or import the FE model")
+    check_positive(stiffness, "stiffness", names)
+
+
+def check_positive(matrix: NDArray, what: str, names: list[str]) -> None:
+    """Raise InputError where a matrix of a held body has a negative eigenvalue."""
+    value, row = _lowest(matrix, names)
     if value < -NEGATIVE_STIFFNESS_LIMIT:
-        raise InputError(
-            f"stiffness has a negative eigenvalue, {value:.2e} of the largest, mostly in row {row} "
-            f"({names[row]}); check its sign and the digits it was exported with"
-        )
+        raise InputError(f"{what} has a negative eigenvalue, {value:.2e} of the largest, mostly in "
+                         f"row {row} ({names[row]}); check its sign and the digits it was exported "
+                         "with")
 
 
 def why_resisted(residual: float, turns: bool = False, local: bool = False) -> str:

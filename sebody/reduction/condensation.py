@@ -62,6 +62,8 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         released motion.
     """
     gone = coordinates_of(body, node, kind)
+    if node == body.base:
+        raise InputError(f"boundary node {node} is the base that holds the body to the ground")
     n, held = len(body.mass), len(body.mass) - body.modes
     bound = np.setdiff1d(np.arange(held), gone)
     inner = np.concatenate([gone, np.arange(held, n)])
@@ -91,7 +93,8 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         (*body.notes, f"{kind} of boundary node {node} released"),
         {name: basis.T @ load for name, load in body.loads.items()},
         body.missing, body.materials, body.units,
-        outputs={name: matrix @ basis for name, matrix in body.outputs.items()})
+        outputs={name: matrix @ basis for name, matrix in body.outputs.items()},
+        base=None if body.base is None else left.index(body.base))
     kept = min(body.modes if modes is None else modes, len(massive))
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 

@@ -25,7 +25,8 @@ def fingerprint(run: Simulation) -> str:
     parts = [repr((run.numbering.names, kinds, written)).encode()] + [
         array.tobytes() for array in (
             system.constants, system.g_unknown, system.table_times, system.table_pieces,
-            system.corners, system.prescribed, system.prescribed_factor, model.gravity_field,
+            system.series_times, system.series_values, system.corners, system.prescribed,
+            system.prescribed_factor, model.gravity_field,
             run.state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
 

@@ -1,6 +1,6 @@
 """Features of time functions that steps miss: peaks between steps, jumps that are not declared."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,21 +32,34 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
     """
     for name, time_function in zip(numbering.port_names, numbering.time_functions, strict=True):
         times = _known(time_function, h)
-        times = times[(times > begin) & (times < end)]
-        if not times.size:
-            continue
-        steps = times / h
-        before = np.floor(steps + ON_GRID) * h
-        seen = np.sort([time_function.values(before), time_function.values(before + h)], axis=0)
-        values = time_function.values(times)
-        excess = np.maximum(values - seen[1], seen[0] - values)
-        on_grid = np.abs(steps - np.round(steps)) < ON_GRID
-        missed = np.flatnonzero(~on_grid & (excess > MISSED * np.abs(values).max()))
-        if missed.size:
-            k = missed[0]
-            yield name, (f"{name} is {values[k]:.4g} at t = {times[k]:.6g}, between two steps of "
-                         f"{h:g}, at which it is {seen[0, k]:.4g} and {seen[1, k]:.4g}: choose "
-                         "steps that meet or resolve the peak, or variable steps with a tolerance")
+        yield from _missed([name], time_function.values, times[(times > begin) & (times < end)], h)
+    for load in numbering.series:
+        assert load.series is not None
+        series, times = load.series, load.series.pieces.times
+        names = [f"column {column} of {load.name}" for column in series.names]
+        yield from _missed(names, series.at, times[(times > begin) & (times < end)], h)
+
+
+def _missed(names: Sequence[str], course: Callable[[NDArray], NDArray], times: NDArray, h: float
+            ) -> Iterator[tuple[str, str]]:
+    """Of some functions of time, (times,) or (times, names), those with a peak that steps miss."""
+    if not times.size:
+        return
+    steps = times / h
+    off_grid = np.abs(steps - np.round(steps)) >= ON_GRID
+    if not off_grid.any():
+        return
+    before = np.floor(steps + ON_GRID) * h
+    seen, values = np.sort([course(before), course(before + h)], axis=0), course(times)
+    excess = np.maximum(values - seen[1], seen[0] - values)
+    missed = (excess > MISSED * np.abs(values).max(axis=0)).reshape(len(times), -1)
+    missed &= off_grid[:, None]
+    for column in np.flatnonzero(missed.any(axis=0)):
+        k, name = np.argmax(missed[:, column]), names[column]
+        value, low, high = (one.reshape(len(times), -1)[k, column] for one in (values, *seen))
+        yield name, (f"{name} is {value:.4g} at t = {times[k]:.6g}, between two steps of "
+                     f"{h:g}, at which it is {low:.4g} and {high:.4g}: choose "
+                     "steps that meet or resolve the peak, or variable steps with a tolerance")
 
 
 def divided(numbering: Numbering, h: float, begin: float, end: float

@@ -48,7 +48,8 @@ class Sampling:
         self._start = state.now.copy()
         # users' functions may change or jump, and short pulses be missed: for each piece to see
         self.needs_looks = any(True for _ in functions(model)) or any(
-            len(one.times) > 1 or one.waves for one in numbering.time_functions)
+            len(one.times) > 1 or one.waves for one in numbering.time_functions) or bool(
+            numbering.series)
         self._driven = {out: one.name for one in continuous(model) for out in one.outputs}
         self._numbers = {name: k for k, name in enumerate(numbering.memory.ports)
                          if name not in self._driven}

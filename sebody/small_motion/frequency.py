@@ -149,6 +149,9 @@ def by_amplitude(run: Simulation | Result, load: Element) -> tuple[NDArray, NDAr
     The latter is that of the unknowns, in their own axes. Loads are linear in their amplitude, so
     the difference is exact.
     """
+    if load.series is not None:
+        raise InputError(f"{load.name!r} is a series of loads, whose columns have no amplitude in "
+                         "common: name a force, a torque or a body_load")
     state, at = run.state, 3 * run.numbering.ports[load]
     kept, derivatives = state.loads.copy(), []
     set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])

@@ -1,5 +1,6 @@
 """Wrong arguments of everything that builds a model."""
 
+import numpy as np
 from malformed.cases import (
     INF,
     NAN,
@@ -18,7 +19,8 @@ from malformed.cases import (
 
 from sebody import Model
 from sebody.fem import Section, loads, straight_beam
-from sebody.reduction import craig_bampton
+from sebody.io import LoadSeries
+from sebody.reduction import craig_bampton, grounded_body
 
 SECTION = Section(1.0, 1e-2, 1e-2, 1e-2, 1e6, 0.3, 1.0)
 POINTS = {"a": (0.0, 0.0, 0.0), "b": (1.0, 0.2, 0.0), "c": (0.0, 0.0, 0.0), "d": (0.0, 2.0, 0.0)}
@@ -26,6 +28,10 @@ FE = straight_beam(POINTS["a"], POINTS["b"], SECTION, 2)
 BODY = craig_bampton(FE, {0: "full", 2: "full"}, 1, loads={"wind": loads.line_load(FE, (0, 0, 1))})
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 TABLE = [(0.0, 0.0), (1.0, 2.0)]
+SERIES = LoadSeries([0.0, 1.0], [[0.0, 1.0], [2.0, 3.0]], ["push", "a.rz"])
+HELD = grounded_body(np.eye(7), np.eye(7), [POINTS["b"]], modes=1)
+
+
 
 
 def spatial() -> Model:
@@ -36,6 +42,7 @@ def spatial() -> Model:
     model.node("place", (3.0, 0.0, 0.0), "translation")
     model.node("turn", (4.0, 0.0, 0.0), "rotation")
     model.superelement("beam", BODY, ["a", "b"])
+    model.beam("mast", ("a", "d"), SECTION, 2, 1)
     model.rigid_body("ball", "d", 1.0, (1.0, 1.0, 1.0))
     for name, joint, x in (("p", "pin", 5.0), ("q", "axle", 6.0)):
         model.node(name, (x, 0.0, 0.0))
@@ -124,8 +131,20 @@ BODIES = {
                            [[2, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 0], [1, 0, 0], [0, 0, 1]])]}),
     "frame node": Right(Model.superelement, {
         "name": "new", "body": BODY, "nodes": ["a", "b"], "frame": "node", "frame_node": 1}, {
-            "frame_node": [*are("frame_node", *NO_COUNT),
+            "frame_node": [*[pair for pair in are("frame_node", *NO_COUNT) if pair[0] is not None],
                            *have("cannot carry the frame", 2, -1)]}),
+    "foundation": Right(Model.foundation, {"name": "new", "body": HELD, "nodes": ["b"]}, {
+        "name": [*are("name of a foundation", *NO_NAME),
+                 ("beam", "superelement 'beam' exists already")],
+        "body": [*are("body of foundation 'new'", None, 3, "beam"),
+                 (BODY, "foundation 'new': its body is not held to the ground: use grounded_body")],
+        "nodes": [*are("nodes of foundation 'new'", None, 3),
+                  *have("foundation 'new' has 1 interface and", [], ["a", "b"]),
+                  *have("node is", [None], [3]), (["x"], "node 'x' is unknown"),
+                  (["place"], "node 'place' has no rotation")],
+        "base": [("x", "node 'x' is unknown"), ("d", "the nodes do not lie where"),
+                 ("place", "node 'place' has no rotation")],
+        "rotation": [*are("rotation", "x"), *have("rotation", 3, [1.0])]}),
     "rigid_body": Right(Model.rigid_body, {
         "name": "new", "node": "a", "mass": 1.0, "inertia": (1.0, 2.0, 2.5), "centre": X}, {
             "name": [*are("name of a body", *NO_NAME), ("ball", "body 'ball' exists already"),
@@ -213,6 +232,23 @@ LOADS = {
         "body": have("superelement", "ball", None, 3, [], BODY),
         "load": have("superelement 'beam' has no load", "rain", None, 3, []),
         "amplitude": histories()[:4], "name": names("wind on beam")}),
+    "body_series": Right(Model.body_series, {
+        "body": "beam", "series": SERIES, "amplitude": TABLE, "columns": {"push": "b.y"}}, {
+            "body": have("superelement", "ball", None, 3, [], BODY),
+            "series": [*are("series on 'beam'", None, 3, TABLE, also=": give a LoadSeries"),
+                       (LoadSeries([0.0], [[1.0]], ["c.x"]), "column 'push' is unknown")],
+            "amplitude": histories()[:4], "name": names("series on beam"),
+            "columns": [*are("columns", 3, ["push"]), ({"pull": "b.y"}, "column 'pull' is unknown"),
+                        ({"push": "c.y"}, "superelement 'beam' has nothing that column 'c.y' acts "
+                                          "on: columns are called 'a.x', 'a.rx', 'mode 0', 'wind'"),
+                        ({"push": 3}, "superelement 'beam' has nothing that column 3 acts on")]}),
+    "beam_series": Right(Model.beam_series, {
+        "beam": "mast", "series": SERIES, "stations": [0.5, 1.0], "direction": Z}, {
+            "beam": have("beam", "beam", None, 3, []),
+            "series": are("series on beam 'mast'", None, 3, TABLE, also=": give a LoadSeries"),
+            "stations": [*have("stations", None, [0.5], [1.0, 0.5], [0.5, 9.0], [-1.0, 1.0]),
+                         *have("stations are", [0.5, 0.5])],
+            "direction": vectors("direction of the series on beam 'mast'", 3)}),
     "user_force": Right(Model.user_force, {
         "name": "new", "nodes": ["a"], "function": lambda t, x, v, force: None}, {
             "name": are("name of a user force", *NO_NAME),

@@ -212,6 +212,20 @@ REDUCTION = {
     "ReducedBody": Call(reduction.ReducedBody, lambda: {
         one.name: getattr(beam_body(), one.name) for one in fields(reduction.ReducedBody)
         if one.init}),
+    "grounded_body": Call(reduction.grounded_body, lambda: {
+        "stiffness": np.eye(7), "mass": np.eye(7), "coordinates": [X], "keeps": ("full",),
+        "modes": 1, "damping": np.eye(7), "base": Y, "coupling": np.zeros((7, 6)),
+        "rigid_mass": np.eye(6), "self_weight_stiffness": np.zeros((7, 7)),
+        "loads": {"wind": np.ones(7)}, "units": "m"}),
+    "grounded_from_fe": Call(reduction.grounded_from_fe, lambda: {
+        "fe_model": beam(), "boundary": [(4, "full")], "base": 0, "modes": 1,
+        "gravity": (0.0, 1.0, 0.0), "loads": np.zeros(30)}),
+    "self_weight_stiffness": Call(reduction.self_weight_stiffness, lambda: {
+        "fe_model": beam(), "boundary": {4: "full"}, "base": 0, "modes": 1,
+        "gravity": (0.0, 1.0, 0.0), "loads": np.zeros(30)}),
+    "appendage": Call(reduction.appendage, lambda: {
+        "masses": np.eye(6), "frequencies": [1.0, 2.0], "participation": 0.1 * np.ones((2, 6)),
+        "damping": 0.01, "point": X, "units": "m"}),
     "damped": Call(lambda **a: beam_body().damped(**a), lambda: {
         "ratio": 0.1, "mass": 0.0, "stiffness": 0.0}),
     "rotated": Call(lambda **a: beam_body().rotated(**a), lambda: {"rotation": np.eye(2)}),
@@ -224,6 +238,16 @@ IO = {
         "provenance": {"source": "here"}, "recovery": True}),
     "load_body": Call(io.load_body, lambda: {"path": "none.npz"}),
     "read_body_file": Call(io.read_body_file, lambda: {"path": "none.npz"}),
+    "LoadSeries": Call(io.LoadSeries, lambda: {
+        "t": [0.0, 1.0], "values": np.eye(2), "names": ("a", "b"), "interpolation": "linear",
+        "others": {"c": [0.0, 1.0]}}),
+    "LoadSeries.from_csv": Call(io.LoadSeries.from_csv, lambda: {
+        "path": "none.csv", "interpolation": "linear", "columns": ["a"]}),
+    "read_extptfm": Call(io.read_extptfm, lambda: {"path": "none.dat", "interface": X, "base": Y}),
+    "write_extptfm": Call(io.write_extptfm, lambda: {
+        "body": reduction.grounded_body(np.eye(7), np.eye(7), [X], modes=1), "path": "a.dat",
+        "series": io.LoadSeries([0.0, 1.0], np.eye(2), ["x", "mode 0"]), "form": "flex",
+        "comment": "here"}),
     "write_sid": Call(io.write_sid, lambda: {"body": beam_body(), "path": "a.sid", "names": None}),
     "import_body": Call(io.import_body, lambda: {
         "path": "none.inp", "interfaces": {"a": "1"}, "modes": 0, "method": "guyan",

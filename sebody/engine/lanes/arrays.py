@@ -19,7 +19,8 @@ from sebody.engine.state import Record, State
 from sebody.engine.system import System
 
 # floats that are the same for all members: times, and what branches are taken by
-SHARED = {"is_multiplier", "table_times", "corners", "prescribed_factor", "memory"}
+SHARED = {"is_multiplier", "table_times", "corners", "prescribed_factor", "memory",
+          "series_times", "series_values"}
 OWN_GROUPS = {"control"}        # of a system: read by single runs of the members alone
 SAMPLED = {"periods", "offsets"}        # and what of it is the same for all
 # scalars of all members together; the other ones of the records are lanes

@@ -68,7 +68,7 @@ def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
 def _jumps(numbering: Numbering) -> NDArray:
     """Times at which loads and drives jump, or may."""
     times: list[float] = []
-    for history in numbering.time_functions:
+    for _, history in numbering.courses:
         if history.functions:
             times += history.corners
             continue

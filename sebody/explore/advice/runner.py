@@ -86,8 +86,7 @@ class Laboratory:
     def missed(self, h: float) -> Missed:
         """The load or drive of which steps miss most."""
         if self._ports is None:
-            share = build(self.model)[1]
-            self._ports = share.port_names, share.time_functions
+            self._ports = tuple(zip(*build(self.model)[1].courses, strict=True)) or ((), ())
         return missed(*self._ports, h, self.runs.t_end)
 
     def add_error(self, error: float) -> None:

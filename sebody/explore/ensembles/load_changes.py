@@ -45,7 +45,12 @@ def law_parameters(model: Model, controller: Controller, name: str) -> Handle:
 
 
 def load_amplitude(model: Model, load: Element, name: str) -> Handle:
-    """Factor of a force, torque or mode force."""
+    """Factor of a force, torque, mode force or load on a body."""
+    if load.body is not None and load.time_function is not None:
+        on_body = {c: np.array(load.constants[c], dtype=float) for c in ("P", "columns")
+                   if c in load.constants}
+        return constants_of(load, lambda factor: {c: factor * one for c, one in on_body.items()},
+                            LOADS, np.array(1.0))
     direction = next((c for c in ("d", "factor") if c in load.constants), None)
     if direction is None or load.time_function is None:     # stops and friction have an axis d
         raise InputError(f"{name}: {load.name!r} is not a force or torque: it has no amplitude")

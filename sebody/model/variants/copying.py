@@ -5,14 +5,17 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody.basics import inputs
+from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.contract.names import body_load_kind
 from sebody.model.bodies import superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
+from sebody.model.series import coordinate_vectors
 from sebody.model.summary import unknowns
 from sebody.model.variants.moved_points import on_body
 from sebody.reduction import ReducedBody
@@ -40,8 +43,8 @@ def copied(model: Mechanism) -> Mechanism:
     elements = (*model.constraints, *model.loads)
     constant: list[object] = [body.reduced for body in model.bodies.values()]
     constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
-    constant += [one for element in elements for one in (element.time_function, element.function)
-                 if one is not None]
+    constant += [one for element in elements for one in (
+        element.time_function, element.function, element.series) if one is not None]
     constant += [one.law.derivatives for one in model.loads
                  if one.law is not None and one.law.derivatives is not None]
     constant += [*model.controllers.values(), *model.sensors.values()]
@@ -90,8 +93,28 @@ def loads_on(model: Mechanism, body: Superelement) -> list[Element]:
 def load_name(load: Element) -> str:
     """Name that the load of a body has there."""
     assert load.body is not None
+    if load.series is not None:
+        raise InputError(f"{load.name!r} is a series of loads on superelement "
+                         f"{load.body.name!r}: it is known for this body alone, leave it out")
     return next(name for name, vector in load.body.reduced.loads.items()
                 if np.array_equal(vector, load.constants["P"]))
+
+
+def _load_constants(load: Element, made: Superelement) -> dict[str, NDArray]:
+    """Those of a load on a body that another one takes the place of.
+
+    Columns of a series act on the coordinates of the same names; what the body lacks, such as
+    modes, they act on no more.
+    """
+    if load.series is None:
+        return {"P": made.reduced.loads[load_name(load)]}
+    assert load.body is not None
+    before = load.body.reduced
+    own = coordinate_vectors(made.reduced, [node.name for node in made.nodes])
+    rows = [own.get(name, np.zeros(len(made.reduced.mass))) for name in coordinate_vectors(
+        before, [node.name for node in load.body.nodes])]
+    return {"P": np.zeros(len(made.reduced.mass)),
+            "columns": np.transpose(rows) @ load.constants["columns"]}
 
 
 def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
@@ -116,7 +139,7 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     kind = body_load_kind(FRAMES[frame].kernel, model.planar)
     model.loads = [
         replace(one, kind=kind, attachments=made.attachments, body=made,
-                constants={"P": body.loads[load_name(one)]}) if one.body is old else
+                constants=_load_constants(one, made)) if one.body is old else
         on_body(one, made, model.planar) if one.point is not None and one.point.body is old else one
         for one in model.loads]
     return made

@@ -40,10 +40,13 @@ def rigid(model: Mechanism, name: str) -> Variant:
     Raises
     ------
     InputError
-        An unknown superelement, positions of two boundary nodes that are both fixed, no node with
+        An unknown superelement, one without inertial coupling with the base that holds it,
+        positions of two boundary nodes that are both fixed, no node with
         position and rotation, or initial velocities that are not those of a rigid body.
     """
-    placed(model, name)
+    if placed(model, name).reduced.rests:
+        raise InputError(f"superelement {name!r} is held to the ground without inertial coupling "
+                         "with its base: its mass as a rigid body is unknown")
     made = copied(model)
     body = made.bodies.pop(name)
     made.own_names.discard(name)

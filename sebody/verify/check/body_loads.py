@@ -2,6 +2,7 @@
 
 from types import ModuleType
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import ENERGY, POWERS, RESIDUAL
@@ -23,16 +24,21 @@ from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 
 def body_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
-    """A generic state and load."""
+    """A generic state and load, with a series of as many columns as the number of the state."""
     case, values, random = placed_case(module, seed, nodes=nodes)
     names = {part.name for part in module.CONSTANTS}
     kept = {name: value for name, value in values.items() if name in names}
-    return with_constants(case._replace(loads=AMPLITUDES), kept | {"P": random.normal(size=case.n)})
+    index = np.r_[case.index, len(AMPLITUDES), seed]        # behind the amplitudes of the port
+    loads = np.r_[AMPLITUDES, random.normal(size=seed)]
+    case = case._replace(loads=loads, index=index, series=seed)
+    return with_constants(case, kept | {"P": random.normal(size=case.n),
+                                        "columns": random.normal(size=(case.n, seed))})
 
 
 def _forces(case: Case) -> NDArray:
     """What the load does, ``-G``, by rotations of SciPy: its vectors turn with the frame."""
-    P, R0 = AMPLITUDES[0] * constants_of(case)["P"], frame_rotation(case).as_matrix()
+    constants, R0 = constants_of(case), frame_rotation(case).as_matrix()
+    P = AMPLITUDES[0] * constants["P"] + constants["columns"] @ case.loads[len(AMPLITUDES):]
     d, forces = case.dimension, P.copy()
     on_positions = P[:case.first_rotation].reshape(-1, d) @ R0[:d, :d].T
     forces[:case.first_rotation] = on_positions.ravel()

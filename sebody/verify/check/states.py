@@ -76,6 +76,7 @@ class Case(NamedTuple):
     slaved: int = 0             # of option C: coordinates that follow the others
     resultants: int = 0         # and stress resultants of second order
     damped: bool = False        # whether the constants of options C and D have its damping
+    series: int = 0             # of a load on a body: columns of a series
 
     @property
     def planar(self) -> bool:
@@ -126,7 +127,8 @@ class Case(NamedTuple):
             return counts | bound_counts(
                 self.n_positions, self.n_rotations, self.planar) | floating_counts(
                 self.planar, self.n, self.slaved, self.resultants, self.damped)
-        return counts | rigid_part_counts(self.planar, self.n, self.damped)
+        return counts | rigid_part_counts(self.planar, self.n, self.damped) | {
+            "series": self.series}
 
     @property
     def row(self) -> Row:
