@@ -11,12 +11,13 @@ runs. ``--pendulum``: planned steps beside fixed ones of the same number. ``--js
 
 import argparse
 import json
+import sys
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-import random_motions
 from scipy.integrate import solve_ivp
 
 from sebody import (
@@ -31,6 +32,9 @@ from sebody import (
 from sebody.runs import accuracy
 from sebody.runs.accuracy import difference
 from sebody.scenes import heavy_top, hinged_beam, spherical_beam_strong, squeezer
+
+sys.path.insert(0, str(Path(__file__).parent))
+import random_motions
 
 RUNS = 3
 CASES = {   # scene, end, output grid, steps of the reference in it
