@@ -81,7 +81,7 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
     way, sign, attachments, constants = (
         _of_joint(model, where, joint, what) if joint is not None else
         _between(model, where, between, what))
-    made = _added(model, Element(chosen_name(model, name, "actuator"),
+    made = _added(model, Element(chosen_name(model, name, "actuator", ("signal",)),
                                  model.kind_of(f"{way}_motor"), attachments,
                                  {"gain": sign * ratio, **constants}, time_function=time_function))
     if inertia:
@@ -168,7 +168,7 @@ def _on_node(model: Mechanism, name: str, where: str, node: Node | str,
     if not constants["d"].any():
         raise InputError(f"{where} has the direction {inputs.shown(direction)}, along which it "
                          "pushes nothing: give one that is not zero")
-    return Element(chosen_name(model, name, "actuator"), model.kind_of(chosen), attachments,
+    return Element(chosen_name(model, name, "actuator", ("signal",)), model.kind_of(chosen), attachments,
                    constants,
                    time_function=time_function)
 

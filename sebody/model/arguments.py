@@ -1,5 +1,7 @@
 """Checks of input: nodes, joints, vectors, names."""
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -107,10 +109,16 @@ def along(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> tuple[NDA
     return e, np.array([-e[1], e[0]])
 
 
-def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
+def chosen_name(model: Mechanism, name: str | None, default: str,
+                shares: Collection[str] = ()) -> str:
     """The name of a joint, load or drive: the given one, or the default, with a number behind it.
 
     The number is left out where it is one: ``spring at a``, then ``spring at a (2)``.
+
+    Parameters
+    ----------
+    shares : collection of str
+        See `refuse_taken`.
     """
     if name is None:
         if default in model.own_names:
@@ -122,17 +130,35 @@ def chosen_name(model: Mechanism, name: str | None, default: str) -> str:
             if numbered not in model.own_names:
                 return numbered
     name = inputs.name(name, f"name of the {default}")
-    refuse_taken(model, name, default)
+    refuse_taken(model, name, default, shares)
     model.own_names.add(name)
     return name
 
 
-def refuse_taken(model: Mechanism, name: str, what: str) -> None:
-    """Refuse a name that a body, joint, load or drive has."""
+def refuse_taken(model: Mechanism, name: str, what: str, shares: Collection[str] = ()) -> None:
+    """Refuse a name that something else of the model has: all names are in one space.
+
+    Parameters
+    ----------
+    shares : collection of str
+        Kinds of things that may have the same name: of a body, joint or drive a node, and of a
+        node a ``part``, which is one of these, since no quantity is one of both; of an actuator the
+        signal by which a controller sets it.
+    """
+    if (holder := _holder(model, name, shares)) is not None:
+        raise InputError(f"{what} cannot be called {name!r}: a {holder} has that name; give it its "
+                         "own with name=")
+
+
+def _holder(model: Mechanism, name: str, shares: Collection[str]) -> str | None:
+    """In words what has a name, of what does not share it."""
     for element in model.elements():
-        if element.name == name:
-            raise InputError(f"{what} cannot be called {name!r}: a {_described(element)} has that "
-                             "name; give it its own with name=")
+        if element.name == name and not ("part" in shares and element not in model.loads):
+            return _described(element)
+    tables = {"node": model.nodes, "sensor": model.sensors, "controller": model.controllers,
+              "signal": {out for one in model.controllers.values() for out in one.outputs}}
+    return next((kind for kind, names in tables.items() if kind not in shares and name in names),
+                None)
 
 
 def _described(element: Superelement | Element | Joint | Motion) -> str:

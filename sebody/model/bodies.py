@@ -163,7 +163,7 @@ def _check_name(model: Mechanism, name: str, what: str) -> None:
     inputs.name(name, f"name of a {what}")
     if name in model.bodies or name in model.rigid_bodies:
         raise InputError(f"{what} {name!r} exists already: give it its own name")
-    refuse_taken(model, name, f"{what} {name!r}")
+    refuse_taken(model, name, f"{what} {name!r}", ("node",))
 
 
 def _check_units(model: Mechanism, name: str, body: ReducedBody) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs as given
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import offered
+from sebody.model.arguments import refuse_taken
 from sebody.model.continuous import law_element
 from sebody.model.control.law import Law
 from sebody.model.control_order import actuators, order
@@ -167,6 +168,8 @@ def _check_written(model: Mechanism, name: str, where: str, outs: tuple[str, ...
                              "an actuator, " + offered(out, known, "there are", "there are none"))
         if out in model.sensors:
             raise InputError(f"{where}: output {out!r} is a sensor: name an actuator, or a signal")
+        if out not in known:
+            refuse_taken(model, out, f"{where}: a signal", ("signal",))
 
 
 def _names(wanted: Iterable[str], what: str, least: int) -> tuple[str, ...]:

@@ -50,7 +50,7 @@ def drive_angle(model: Mechanism, node: Node | str, motion: Source,
     time_function = motions.motion(motion)
     vectors = turning_axes(model, axis, "drive", a, signed=True)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
-    name = chosen_name(model, name, f"angle at {a.name}")
+    name = chosen_name(model, name, f"angle at {a.name}", ("node",))
     equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1,
                        time_function)
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
@@ -69,7 +69,7 @@ def drive_slide(model: Mechanism, node: Node | str, motion: Source, axis: ArrayL
     vectors = along(model, axis, "drive", a)
     constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
     time_function = motions.motion(motion)
-    name = chosen_name(model, name, f"slide at {a.name}")
+    name = chosen_name(model, name, f"slide at {a.name}", ("node",))
     equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
                        constants, 1, time_function)
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
@@ -109,7 +109,7 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Sourc
                          "that is not zero")
     time_function = motions.motion(motion)
     count = len(moved.motions) + 1
-    name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}")
+    name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}", ("node",))
     hold(model, node, what)
     moved.motions.append(Motion(name, way, time_function, Attachment(node, what)))
     return moved.motions[-1]

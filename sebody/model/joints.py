@@ -140,7 +140,7 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
     a, b = pair(model, node, to, what)
     vectors = axes(model, normal, what, a)
     on_plane = Equations("on_plane", positions(a, b) + rotations(a), {"n1": vectors[0]}, 1)
-    name = chosen_name(model, name, f"{what} at {a.name}")
+    name = chosen_name(model, name, f"{what} at {a.name}", ("node",))
     return _joint(model, what, name, a, b, [on_plane, _parallel(a, b, vectors)],
                   Axes.of(a, vectors))
 
@@ -192,7 +192,7 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
 
 
 def _named(model: Mechanism, name: str | None, what: str, a: Node) -> str:
-    return chosen_name(model, name, f"{what.removesuffix(' joint')} at {a.name}")
+    return chosen_name(model, name, f"{what.removesuffix(' joint')} at {a.name}", ("node",))
 
 
 def _joint(model: Mechanism, what: str, name: str, node: Node, to: Node,

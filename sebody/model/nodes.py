@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
-from sebody.model.arguments import dof_block, known, rotation_vector, vector
+from sebody.model.arguments import dof_block, known, refuse_taken, rotation_vector, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, DofBlock, Node
 
@@ -170,6 +170,7 @@ def _check_new(model: Mechanism, name: str) -> None:
                          "give it another name")
     if name in model.nodes:
         raise InputError(f"node {name!r} exists already: give every node its own name")
+    refuse_taken(model, name, "a node", ("part",))
 
 
 def _rotation(model: Mechanism, name: str, fixed: bool = False) -> DofBlock:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sebody.basics import inputs as given
 from sebody.basics.errors import InputError
-from sebody.model.arguments import dof_block, known
+from sebody.model.arguments import dof_block, known, refuse_taken
 from sebody.model.control_parts import MOST_DELAY, Sensor
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node
@@ -74,6 +74,5 @@ def _axes(model: Mechanism, where: str, quantity: str, axes: Node | str | None) 
 
 
 def check_new(model: Mechanism, name: str, where: str) -> None:
-    """Refuse a name that a sensor or controller has."""
-    if name in model.sensors or name in model.controllers:
-        raise InputError(f"{where}: the name is taken by a sensor or controller; give another one")
+    """Refuse a name that something else of the model has."""
+    refuse_taken(model, name, where)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, simulate
+from sebody import InputError, Model, plane, simulate
+from sebody.control import pid
 from sebody.model.parts import Element, Joint
 
 RAMP = [(0.0, 0.0), (1.0, 0.3)]
@@ -79,6 +80,53 @@ def test_bodies_take_no_name_of_a_joint():
         model.point_mass("rod", "a", 1.0)
     with pytest.raises(InputError, match="body 'body a' exists already: give it its own name"):
         model.point_mass("body a", "a", 1.0)
+
+
+@pytest.mark.parametrize("kind", ["force", "torque", "spring", "torsion spring", "bushing"])
+def test_loads_take_no_name_of_a_node(kind):
+    """In either order: ``c.moment`` would be that of the load."""
+    model = two_bodies()
+    with pytest.raises(InputError, match="cannot be called 'c': a node has that name; give it its"):
+        SPATIAL[kind](model, name="c")
+    SPATIAL[kind](model, name="e")
+    with pytest.raises(InputError, match=f"a node cannot be called 'e': a {kind} has that name"):
+        model.node("e", (5.0, 0, 0))
+
+
+def test_actuators_contacts_and_sensors_share_one_space_of_names():
+    model = two_bodies()
+    model.spherical("a", to="c", name="ball")
+    floor = {"on": plane((0.0, 0, 1), (0.0, 0, -9)), "stiffness": 1e4}
+    for build in (lambda name: model.actuator(name, node="b", direction=X),
+                  lambda name: model.contact("b", name=name, **floor),
+                  lambda name: model.stop(("b", "d"), upper=9.0, stiffness=1.0, name=name),
+                  lambda name: model.friction("ball", 0.1, radius=0.1, name=name),
+                  lambda name: model.user_force(name, ["b"], lambda t, x, v, force: None),
+                  lambda name: model.sensor(name, "b.position.x")):
+        for taken, holder in (("d", "node"), ("ball", "joint"), ("push", "force")):
+            model.loads[:] = [one for one in model.loads if one.name != "push"]
+            model.own_names.discard("push")
+            model.force("b", X, name="push")
+            with pytest.raises(InputError, match=f"cannot be called '{taken}': a {holder} has"):
+                build(taken)
+
+
+def test_an_actuator_takes_the_name_of_the_signal_that_sets_it():
+    """And nothing else does."""
+    model = two_bodies()
+    model.controller("law", pid(1.0), ["b.position.x"], ["motor"], 0.1)
+    with pytest.raises(InputError, match="cannot be called 'motor': a signal has that name"):
+        model.force("b", X, name="motor")
+    with pytest.raises(InputError, match="a node cannot be called 'motor': a signal has that"):
+        model.node("motor", (5.0, 0, 0))
+    assert model.actuator("motor", node="b", direction=X) is model.element("motor")
+
+
+def test_bodies_and_joints_may_have_the_name_of_a_node():
+    """No quantity is one of both."""
+    model = two_bodies()
+    model.point_mass("d", "d", 1.0)
+    assert model.revolute("a", Z, to="c", name="a") is model.element("a")
 
 
 def test_a_default_name_may_be_given_to_nothing_else():
