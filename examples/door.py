@@ -25,7 +25,8 @@ def build(friction: float = 0.15, restitution: float = 0.4) -> Scene:
     model.rigid_body("leaf", "hinge", 20.0, (6.7, 1.1, 7.8), centre=(0.4, 0.0, 1.0))
     model.attach("edge", (0.8, 0.0, 1.0), "hinge")
     model.revolute("hinge", axis=(0.0, 0.0, 1.0), name="pins")
-    model.friction("pins", friction, static=1.3 * friction, radius=0.01, arm=0.5, name="dry")
+    model.friction("pins", friction, static=1.3 * friction, radius=0.01, arm=0.5,
+                   takes="whole", name="dry")
     model.stop("pins", lower=-0.2, upper=1.4, restitution=restitution, at_speed=1.0, stiffness=2e4,
                name="frame")
     model.initial_velocity("hinge", angular=(0.0, 0.0, 1.5))

@@ -38,6 +38,8 @@ CONSTANTS = (
     Part("radius", (), "lever arm of the friction force; 1 along an axis [length]"),
     Part("preload", (), "normal force that is always there"),
     Part("per_moment", (), "one over the arm that turns moments into normal forces [1/length]"),
+    Part("across", (), "square of the share of the force across the axis in the normal force"),
+    Part("along", (), "likewise of the force along the axis"),
     Part("d", (3,), "direction normal to the axis, in axes of body a"),
     Part("n", (3,), "where it is at angle zero, in axes of body b"),
     Part("m", (3,), "and at a right angle, in axes of body b"),
@@ -52,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (158, 0, 0, 0),
-              "column": (513, 0, 0, 0)}
+              "column": (519, 0, 0, 0)}
 
 
 @kernel_function
@@ -72,15 +74,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         radius = constant[5]
         preload = constant[6]
         per_moment = constant[7]
-        d_x = constant[8]
-        d_y = constant[9]
-        d_z = constant[10]
-        n_x = constant[11]
-        n_y = constant[12]
-        n_z = constant[13]
-        m_x = constant[14]
-        m_y = constant[15]
-        m_z = constant[16]
+        across = constant[8]
+        along = constant[9]
+        d_x = constant[10]
+        d_y = constant[11]
+        d_z = constant[12]
+        n_x = constant[13]
+        n_y = constant[14]
+        n_z = constant[15]
+        m_x = constant[16]
+        m_y = constant[17]
+        m_z = constant[18]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -131,71 +135,81 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t15 = -Omb_y*t11 + Omb_z*t7 + t0*t14 + t1*t13 + t12*t2
         t16 = Omb_x*t11 - Omb_z*t3 + t12*t6 + t13*t5 + t14*t4
         t17 = -Omb_x*t7 + Omb_y*t3 + t10*t12 + t13*t9 + t14*t8
+        t18 = -m_y*n_z + m_z*n_y
+        t19 = m_x*n_z - m_z*n_x
+        t20 = -m_x*n_y + m_y*n_x
         angle_seen_1 = t3
         angle_seen_2 = t7
         angle_seen_3 = t11
         angle_along_n = n_x*t15 + n_y*t16 + n_z*t17
         angle_along_m = m_x*t15 + m_y*t16 + m_z*t17
-        t18 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-        t19 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t20 = atan2(t18, t19)
+        axis_1 = Rb_xx*t18 + Rb_xy*t19 + Rb_xz*t20
+        axis_2 = Rb_yx*t18 + Rb_yy*t19 + Rb_yz*t20
+        axis_3 = Rb_zx*t18 + Rb_zy*t19 + Rb_zz*t20
+        t21 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+        t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+        t23 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+        t24 = atan2(t22, t23)
         pressed = (radius*(per_moment*sqrt(moment_1*moment_1 + 1e-300) + preload +
-            sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)))
-        increment_1 = (-kept_angle + t20 + 6.283185307179586*floor(0.15915494309189535*kept_angle
-            - 0.15915494309189535*t20 + 0.5))
-        slip_1 = (angle_along_m*t19 - angle_along_n*t18)/(t18*t18 + t19*t19)
+            sqrt(across*((-axis_1*t21 + force_1)*(-axis_1*t21 + force_1) + (-axis_2*t21 +
+            force_2)*(-axis_2*t21 + force_2) + (-axis_3*t21 + force_3)*(-axis_3*t21 + force_3)) +
+            along*t21*t21 + 1e-300)))
+        increment_1 = (-kept_angle + t24 + 6.283185307179586*floor(0.15915494309189535*kept_angle
+            - 0.15915494309189535*t24 + 0.5))
+        slip_1 = (angle_along_m*t23 - angle_along_n*t22)/(t22*t22 + t23*t23)
         z = increment_1*kept_begun + kept_bent
         dynamic_limit = coefficient*pressed
         static_limit = pressed*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial = bristle*z + bristle_damping*slip_1
         bent_size = sqrt(z*z + 1e-300)
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
-        t21 = slip_speed/speed
+        t25 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t25) + (t25*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
         slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
             -static_limit + trial_size > 0.0 else trial))
-        t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-        t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-        t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-        t25 = d_y*t23 - d_z*t24
-        t26 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-        t27 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-        t28 = d_y*t26 - d_z*t27
-        t29 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-        t30 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-        t31 = d_y*t29 - d_z*t30
-        t32 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t33 = friction/(t22*t22 + t32*t32)
-        t34 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-        t35 = -d_x*t23 + d_z*t34
-        t36 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-        t37 = -d_x*t26 + d_z*t36
-        t38 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-        t39 = -d_x*t29 + d_z*t38
-        t40 = d_x*t24 - d_y*t34
-        t41 = d_x*t27 - d_y*t36
-        t42 = d_x*t30 - d_y*t38
-        t43 = atan2(t22, t32)
-        g[0] = t33*(-t22*(n_x*t25 + n_y*t28 + n_z*t31) + t32*(m_x*t25 + m_y*t28 + m_z*t31))
-        g[1] = t33*(-t22*(n_x*t35 + n_y*t37 + n_z*t39) + t32*(m_x*t35 + m_y*t37 + m_z*t39))
-        g[2] = t33*(-t22*(n_x*t40 + n_y*t41 + n_z*t42) + t32*(m_x*t40 + m_y*t41 + m_z*t42))
-        g[3] = (t33*(-t22*(-angle_seen_2*n_z + angle_seen_3*n_y) + t32*(-angle_seen_2*m_z +
+        t26 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+        t27 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+        t28 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+        t29 = d_y*t27 - d_z*t28
+        t30 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+        t31 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+        t32 = d_y*t30 - d_z*t31
+        t33 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+        t34 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+        t35 = d_y*t33 - d_z*t34
+        t36 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+        t37 = friction/(t26*t26 + t36*t36)
+        t38 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+        t39 = -d_x*t27 + d_z*t38
+        t40 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+        t41 = -d_x*t30 + d_z*t40
+        t42 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+        t43 = -d_x*t33 + d_z*t42
+        t44 = d_x*t28 - d_y*t38
+        t45 = d_x*t31 - d_y*t40
+        t46 = d_x*t34 - d_y*t42
+        t47 = atan2(t26, t36)
+        t48 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+        g[0] = t37*(-t26*(n_x*t29 + n_y*t32 + n_z*t35) + t36*(m_x*t29 + m_y*t32 + m_z*t35))
+        g[1] = t37*(-t26*(n_x*t39 + n_y*t41 + n_z*t43) + t36*(m_x*t39 + m_y*t41 + m_z*t43))
+        g[2] = t37*(-t26*(n_x*t44 + n_y*t45 + n_z*t46) + t36*(m_x*t44 + m_y*t45 + m_z*t46))
+        g[3] = (t37*(-t26*(-angle_seen_2*n_z + angle_seen_3*n_y) + t36*(-angle_seen_2*m_z +
             angle_seen_3*m_y)))
-        g[4] = (t33*(-t22*(angle_seen_1*n_z - angle_seen_3*n_x) + t32*(angle_seen_1*m_z -
+        g[4] = (t37*(-t26*(angle_seen_1*n_z - angle_seen_3*n_x) + t36*(angle_seen_1*m_z -
             angle_seen_3*m_x)))
-        g[5] = (t33*(-t22*(-angle_seen_1*n_y + angle_seen_2*n_x) + t32*(-angle_seen_1*m_y +
+        g[5] = (t37*(-t26*(-angle_seen_1*n_y + angle_seen_2*n_x) + t36*(-angle_seen_1*m_y +
             angle_seen_2*m_x)))
         g[6] = 0.0
         g[7] = 0.0
         g[8] = 0.0
         g[9] = 0.0
-        frames[index[first + AT_FRAME]] = (t43 +
-            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t43 +
+        frames[index[first + AT_FRAME]] = (t47 +
+            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t47 +
             0.5))
         frames[index[first + AT_FRAME] + 1] = (z*(0.0 if speed > 0.0 else
             ((dynamic_limit/(bent_size*bristle) if bent_size*bristle - dynamic_limit > 0.0 else
@@ -203,7 +217,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 2] = slips
         frames[index[first + AT_FRAME] + 3] = 1.0
         frames[index[first + AT_FRAME] + 4] = (per_moment*sqrt(moment_1*moment_1 + 1e-300) +
-            preload + sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300))
+            preload + sqrt(across*((-axis_1*t48 + force_1)*(-axis_1*t48 + force_1) + (-axis_2*t48
+            + force_2)*(-axis_2*t48 + force_2) + (-axis_3*t48 + force_3)*(-axis_3*t48 + force_3))
+            + along*t48*t48 + 1e-300))
         if task == ENERGY:
             t900 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
             t901 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
@@ -266,39 +282,75 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t44 = radius/sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)
-            t45 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t46 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t47 = t45*t45 + t46*t46
-            t48 = 1/t47
-            t49 = t45*t48
-            t50 = -t46*t48
-            t51 = 2*t46
-            t52 = 2*t45
-            t53 = (angle_along_m*t45 - angle_along_n*t46)/(t47*t47)
-            dpressed_by_force_1 = force_1*t44
-            dpressed_by_force_2 = force_2*t44
-            dpressed_by_force_3 = force_3*t44
+            t49 = axis_1*force_1
+            t50 = axis_2*force_2
+            t51 = axis_3*force_3
+            t52 = t49 + t50 + t51
+            t53 = along*t52
+            t54 = 2*force_1
+            t55 = axis_2*t52
+            t56 = force_2 - t55
+            t57 = axis_2*t56
+            t58 = axis_3*t52
+            t59 = force_3 - t58
+            t60 = axis_3*t59
+            t61 = 2*t50
+            t62 = 2*t51
+            t63 = axis_1*t52
+            t64 = force_1 - t63
+            t65 = (0.5)*across
+            t66 = radius/sqrt(across*(t56*t56 + t59*t59 + t64*t64) + along*t52*t52 + 1e-300)
+            t67 = 2*force_2
+            t68 = axis_1*t64
+            t69 = 2*t49
+            t70 = 2*force_3
+            t71 = 2*axis_1
+            t72 = 2*axis_2
+            t73 = 2*axis_3
+            t74 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t75 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t76 = t74*t74 + t75*t75
+            t77 = 1/t76
+            t78 = t74*t77
+            t79 = -t75*t77
+            t80 = 2*t75
+            t81 = 2*t74
+            t82 = (angle_along_m*t74 - angle_along_n*t75)/(t76*t76)
+            dpressed_by_axis_1 = (t66*(force_1*t53 + t65*(-t54*t57 - t54*t60 + t64*(-4*t49 - t61 -
+                t62))))
+            dpressed_by_axis_2 = (t66*(force_2*t53 + t65*(t56*(-4*t50 - t62 - t69) - t60*t67 -
+                t67*t68)))
+            dpressed_by_axis_3 = (t66*(force_3*t53 + t65*(-t57*t70 + t59*(-4*t51 - t61 - t69) -
+                t68*t70)))
+            dpressed_by_force_1 = (t66*(along*t63 + t65*(-t57*t71 - t60*t71 + t64*(2 -
+                2*axis_1*axis_1))))
+            dpressed_by_force_2 = (t66*(along*t55 + t65*(t56*(2 - 2*axis_2*axis_2) - t60*t72 -
+                t68*t72)))
+            dpressed_by_force_3 = (t66*(along*t58 + t65*(-t57*t73 + t59*(2 - 2*axis_3*axis_3) -
+                t68*t73)))
             dpressed_by_moment_1 = moment_1*per_moment*radius/sqrt(moment_1*moment_1 + 1e-300)
-            dincrement_1_by_angle_seen_1 = m_x*t49 + n_x*t50
-            dincrement_1_by_angle_seen_2 = m_y*t49 + n_y*t50
-            dincrement_1_by_angle_seen_3 = m_z*t49 + n_z*t50
-            dslip_1_by_angle_seen_1 = (t48*(angle_along_m*n_x - angle_along_n*m_x) + t53*(-m_x*t51
-                - n_x*t52))
-            dslip_1_by_angle_seen_2 = (t48*(angle_along_m*n_y - angle_along_n*m_y) + t53*(-m_y*t51
-                - n_y*t52))
-            dslip_1_by_angle_seen_3 = (t48*(angle_along_m*n_z - angle_along_n*m_z) + t53*(-m_z*t51
-                - n_z*t52))
-            dslip_1_by_angle_along_n = t50
-            dslip_1_by_angle_along_m = t49
+            dincrement_1_by_angle_seen_1 = m_x*t78 + n_x*t79
+            dincrement_1_by_angle_seen_2 = m_y*t78 + n_y*t79
+            dincrement_1_by_angle_seen_3 = m_z*t78 + n_z*t79
+            dslip_1_by_angle_seen_1 = (t77*(angle_along_m*n_x - angle_along_n*m_x) + t82*(-m_x*t80
+                - n_x*t81))
+            dslip_1_by_angle_seen_2 = (t77*(angle_along_m*n_y - angle_along_n*m_y) + t82*(-m_y*t80
+                - n_y*t81))
+            dslip_1_by_angle_seen_3 = (t77*(angle_along_m*n_z - angle_along_n*m_z) + t82*(-m_z*t80
+                - n_z*t81))
+            dslip_1_by_angle_along_n = t79
+            dslip_1_by_angle_along_m = t78
             dz_by_angle_seen_1 = dincrement_1_by_angle_seen_1*kept_begun
             dz_by_angle_seen_2 = dincrement_1_by_angle_seen_2*kept_begun
             dz_by_angle_seen_3 = dincrement_1_by_angle_seen_3*kept_begun
+            ddynamic_limit_by_axis_1 = coefficient*dpressed_by_axis_1
+            ddynamic_limit_by_axis_2 = coefficient*dpressed_by_axis_2
+            ddynamic_limit_by_axis_3 = coefficient*dpressed_by_axis_3
             ddynamic_limit_by_force_1 = coefficient*dpressed_by_force_1
             ddynamic_limit_by_force_2 = coefficient*dpressed_by_force_2
             ddynamic_limit_by_force_3 = coefficient*dpressed_by_force_3
             ddynamic_limit_by_moment_1 = coefficient*dpressed_by_moment_1
-            t54 = slip_1/sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
+            t83 = slip_1/sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
             dtrial_by_angle_seen_1 = (bristle*dz_by_angle_seen_1 +
                 bristle_damping*dslip_1_by_angle_seen_1)
             dtrial_by_angle_seen_2 = (bristle*dz_by_angle_seen_2 +
@@ -307,63 +359,69 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bristle_damping*dslip_1_by_angle_seen_3)
             dtrial_by_angle_along_n = bristle_damping*dslip_1_by_angle_along_n
             dtrial_by_angle_along_m = bristle_damping*dslip_1_by_angle_along_m
-            dslip_speed_by_angle_seen_1 = dslip_1_by_angle_seen_1*t54
-            dslip_speed_by_angle_seen_2 = dslip_1_by_angle_seen_2*t54
-            dslip_speed_by_angle_seen_3 = dslip_1_by_angle_seen_3*t54
-            dslip_speed_by_angle_along_n = dslip_1_by_angle_along_n*t54
-            dslip_speed_by_angle_along_m = dslip_1_by_angle_along_m*t54
-            t55 = trial/sqrt(trial*trial + 1e-300)
-            t56 = slip_speed*slip_speed
-            t57 = 1/speed
-            t58 = 4*t57
-            t59 = tanh(slip_speed*t58)
-            t60 = -coefficient + static
-            t61 = 0.75 + ((0.25)*t56)/(speed*speed)
-            t62 = (t57*t60)/(t61*t61)
-            t63 = coefficient*t59 + slip_speed*t62
-            t64 = 1/slip_speed
-            t65 = (pressed*t64*(coefficient*t58*(1 - t59*t59) + t62 +
-                (-t56*t60)/(speed*speed*speed*t61*t61*t61)) - pressed*t63/t56 if speed > 0.0 else
+            dslip_speed_by_angle_seen_1 = dslip_1_by_angle_seen_1*t83
+            dslip_speed_by_angle_seen_2 = dslip_1_by_angle_seen_2*t83
+            dslip_speed_by_angle_seen_3 = dslip_1_by_angle_seen_3*t83
+            dslip_speed_by_angle_along_n = dslip_1_by_angle_along_n*t83
+            dslip_speed_by_angle_along_m = dslip_1_by_angle_along_m*t83
+            t84 = trial/sqrt(trial*trial + 1e-300)
+            t85 = slip_speed*slip_speed
+            t86 = 1/speed
+            t87 = 4*t86
+            t88 = tanh(slip_speed*t87)
+            t89 = -coefficient + static
+            t90 = 0.75 + ((0.25)*t85)/(speed*speed)
+            t91 = (t86*t89)/(t90*t90)
+            t92 = coefficient*t88 + slip_speed*t91
+            t93 = 1/slip_speed
+            t94 = (pressed*t93*(coefficient*t87*(1 - t88*t88) + t91 +
+                (-t85*t89)/(speed*speed*speed*t90*t90*t90)) - pressed*t92/t85 if speed > 0.0 else
                 0)
-            t66 = t63*t64 if speed > 0.0 else 0
-            dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t55
-            dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t55
-            dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t55
-            dtrial_size_by_angle_along_n = dtrial_by_angle_along_n*t55
-            dtrial_size_by_angle_along_m = dtrial_by_angle_along_m*t55
-            ddrag_by_angle_seen_1 = dslip_speed_by_angle_seen_1*t65
-            ddrag_by_angle_seen_2 = dslip_speed_by_angle_seen_2*t65
-            ddrag_by_angle_seen_3 = dslip_speed_by_angle_seen_3*t65
-            ddrag_by_angle_along_n = dslip_speed_by_angle_along_n*t65
-            ddrag_by_angle_along_m = dslip_speed_by_angle_along_m*t65
-            ddrag_by_force_1 = dpressed_by_force_1*t66
-            ddrag_by_force_2 = dpressed_by_force_2*t66
-            ddrag_by_force_3 = dpressed_by_force_3*t66
-            ddrag_by_moment_1 = dpressed_by_moment_1*t66
-            t67 = slip_1 if speed > 0.0 else 0
-            t68 = drag if speed > 0.0 else 0
-            t69 = -static_limit + trial_size
-            t70 = 1/trial_size
-            t71 = 0 if speed > 0.0 else (dynamic_limit*t70 if t69 > 0.0 else 1)
-            t72 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t69 >
+            t95 = t92*t93 if speed > 0.0 else 0
+            dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t84
+            dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t84
+            dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t84
+            dtrial_size_by_angle_along_n = dtrial_by_angle_along_n*t84
+            dtrial_size_by_angle_along_m = dtrial_by_angle_along_m*t84
+            ddrag_by_angle_seen_1 = dslip_speed_by_angle_seen_1*t94
+            ddrag_by_angle_seen_2 = dslip_speed_by_angle_seen_2*t94
+            ddrag_by_angle_seen_3 = dslip_speed_by_angle_seen_3*t94
+            ddrag_by_angle_along_n = dslip_speed_by_angle_along_n*t94
+            ddrag_by_angle_along_m = dslip_speed_by_angle_along_m*t94
+            ddrag_by_axis_1 = dpressed_by_axis_1*t95
+            ddrag_by_axis_2 = dpressed_by_axis_2*t95
+            ddrag_by_axis_3 = dpressed_by_axis_3*t95
+            ddrag_by_force_1 = dpressed_by_force_1*t95
+            ddrag_by_force_2 = dpressed_by_force_2*t95
+            ddrag_by_force_3 = dpressed_by_force_3*t95
+            ddrag_by_moment_1 = dpressed_by_moment_1*t95
+            t96 = slip_1 if speed > 0.0 else 0
+            t97 = drag if speed > 0.0 else 0
+            t98 = -static_limit + trial_size
+            t99 = 1/trial_size
+            t100 = 0 if speed > 0.0 else (dynamic_limit*t99 if t98 > 0.0 else 1)
+            t101 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t98 >
                 0.0 else 0))
-            t73 = 0 if speed > 0.0 else (t70*trial if t69 > 0.0 else 0)
-            dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t67 + dslip_1_by_angle_seen_1*t68 +
-                dtrial_by_angle_seen_1*t71 + dtrial_size_by_angle_seen_1*t72)
-            dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t67 + dslip_1_by_angle_seen_2*t68 +
-                dtrial_by_angle_seen_2*t71 + dtrial_size_by_angle_seen_2*t72)
-            dfriction_by_angle_seen_3 = (ddrag_by_angle_seen_3*t67 + dslip_1_by_angle_seen_3*t68 +
-                dtrial_by_angle_seen_3*t71 + dtrial_size_by_angle_seen_3*t72)
-            dfriction_by_angle_along_n = (ddrag_by_angle_along_n*t67 +
-                dslip_1_by_angle_along_n*t68 + dtrial_by_angle_along_n*t71 +
-                dtrial_size_by_angle_along_n*t72)
-            dfriction_by_angle_along_m = (ddrag_by_angle_along_m*t67 +
-                dslip_1_by_angle_along_m*t68 + dtrial_by_angle_along_m*t71 +
-                dtrial_size_by_angle_along_m*t72)
-            dfriction_by_force_1 = ddrag_by_force_1*t67 + ddynamic_limit_by_force_1*t73
-            dfriction_by_force_2 = ddrag_by_force_2*t67 + ddynamic_limit_by_force_2*t73
-            dfriction_by_force_3 = ddrag_by_force_3*t67 + ddynamic_limit_by_force_3*t73
-            dfriction_by_moment_1 = ddrag_by_moment_1*t67 + ddynamic_limit_by_moment_1*t73
+            t102 = 0 if speed > 0.0 else (t99*trial if t98 > 0.0 else 0)
+            dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t96 + dslip_1_by_angle_seen_1*t97 +
+                dtrial_by_angle_seen_1*t100 + dtrial_size_by_angle_seen_1*t101)
+            dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t96 + dslip_1_by_angle_seen_2*t97 +
+                dtrial_by_angle_seen_2*t100 + dtrial_size_by_angle_seen_2*t101)
+            dfriction_by_angle_seen_3 = (ddrag_by_angle_seen_3*t96 + dslip_1_by_angle_seen_3*t97 +
+                dtrial_by_angle_seen_3*t100 + dtrial_size_by_angle_seen_3*t101)
+            dfriction_by_angle_along_n = (ddrag_by_angle_along_n*t96 +
+                dslip_1_by_angle_along_n*t97 + dtrial_by_angle_along_n*t100 +
+                dtrial_size_by_angle_along_n*t101)
+            dfriction_by_angle_along_m = (ddrag_by_angle_along_m*t96 +
+                dslip_1_by_angle_along_m*t97 + dtrial_by_angle_along_m*t100 +
+                dtrial_size_by_angle_along_m*t101)
+            dfriction_by_axis_1 = ddrag_by_axis_1*t96 + ddynamic_limit_by_axis_1*t102
+            dfriction_by_axis_2 = ddrag_by_axis_2*t96 + ddynamic_limit_by_axis_2*t102
+            dfriction_by_axis_3 = ddrag_by_axis_3*t96 + ddynamic_limit_by_axis_3*t102
+            dfriction_by_force_1 = ddrag_by_force_1*t96 + ddynamic_limit_by_force_1*t102
+            dfriction_by_force_2 = ddrag_by_force_2*t96 + ddynamic_limit_by_force_2*t102
+            dfriction_by_force_3 = ddrag_by_force_3*t96 + ddynamic_limit_by_force_3*t102
+            dfriction_by_moment_1 = ddrag_by_moment_1*t96 + ddynamic_limit_by_moment_1*t102
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -384,181 +442,188 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t74 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t75 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t76 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t77 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t78 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t79 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t80 = Ra_xx*t74 + Ra_yx*t75 + Ra_zx*t76 + Rb_xx*t77 + Rb_yx*t78 + Rb_zx*t79
-                t81 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t82 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t83 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t84 = Ra_xy*t74 + Ra_yy*t75 + Ra_zy*t76 + Rb_xx*t81 + Rb_yx*t82 + Rb_zx*t83
-                t85 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t86 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t87 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t88 = Ra_xz*t74 + Ra_yz*t75 + Ra_zz*t76 + Rb_xx*t85 + Rb_yx*t86 + Rb_zx*t87
-                t89 = d_x*t80 + d_y*t84 + d_z*t88
-                t90 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t91 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t92 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t93 = Ra_xx*t90 + Ra_yx*t91 + Ra_zx*t92 + Rb_xy*t77 + Rb_yy*t78 + Rb_zy*t79
-                t94 = Ra_xy*t90 + Ra_yy*t91 + Ra_zy*t92 + Rb_xy*t81 + Rb_yy*t82 + Rb_zy*t83
-                t95 = Ra_xz*t90 + Ra_yz*t91 + Ra_zz*t92 + Rb_xy*t85 + Rb_yy*t86 + Rb_zy*t87
-                t96 = d_x*t93 + d_y*t94 + d_z*t95
-                t97 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t98 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t99 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t100 = Ra_xx*t97 + Ra_yx*t98 + Ra_zx*t99 + Rb_xz*t77 + Rb_yz*t78 + Rb_zz*t79
-                t101 = Ra_xy*t97 + Ra_yy*t98 + Ra_zy*t99 + Rb_xz*t81 + Rb_yz*t82 + Rb_zz*t83
-                t102 = Ra_xz*t97 + Ra_yz*t98 + Ra_zz*t99 + Rb_xz*t85 + Rb_yz*t86 + Rb_zz*t87
-                t103 = d_x*t100 + d_y*t101 + d_z*t102
-                t104 = Oma_x*d_y - Oma_y*d_x
-                t105 = -Oma_x*d_z + Oma_z*d_x
-                t106 = Oma_y*d_z - Oma_z*d_y
-                t107 = -Omb_y*t103 + Omb_z*t96 + t104*t88 + t105*t84 + t106*t80
-                t108 = Omb_x*t103 - Omb_z*t89 + t104*t95 + t105*t94 + t106*t93
-                t109 = -Omb_x*t96 + Omb_y*t89 + t100*t106 + t101*t105 + t102*t104
-                t110 = -d_x*utha_y + d_y*utha_x
-                t111 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t112 = d_x*utha_z - d_z*utha_x
-                t113 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t114 = -d_y*utha_z + d_z*utha_y
-                t115 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t116 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t117 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t118 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t119 = d_x*t116 + d_y*t117 + d_z*t118
-                t120 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t121 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t122 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t123 = d_x*t120 + d_y*t121 + d_z*t122
-                t124 = t110*t111 + t112*t113 + t114*t115 + t119*uthb_z - t123*uthb_y
-                t125 = d_x*t115 + d_y*t113 + d_z*t111
-                t126 = t110*t118 + t112*t117 + t114*t116 + t123*uthb_x - t125*uthb_z
-                t127 = t110*t122 + t112*t121 + t114*t120 - t119*uthb_x + t125*uthb_y
-                dangle_seen_1 = t89
-                dangle_seen_2 = t96
-                dangle_seen_3 = t103
-                dangle_along_n = n_x*t107 + n_y*t108 + n_z*t109
-                uangle_along_n = n_x*t124 + n_y*t126 + n_z*t127
-                dangle_along_m = m_x*t107 + m_y*t108 + m_z*t109
-                uangle_along_m = m_x*t124 + m_y*t126 + m_z*t127
-                t128 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t129 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t130 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t131 = d_y*t129 - d_z*t130
-                t132 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t133 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t134 = d_y*t132 - d_z*t133
-                t135 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t136 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t137 = d_y*t135 - d_z*t136
-                t138 = n_x*t131 + n_y*t134 + n_z*t137
-                t139 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t140 = m_x*t131 + m_y*t134 + m_z*t137
-                t141 = -t128*t138 + t139*t140
-                t142 = t128*t128 + t139*t139
-                t143 = 1/t142
-                t144 = (c_damping*t143*(dfriction_by_angle_along_m*uangle_along_m +
+                t103 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t104 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t105 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t106 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t107 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t108 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t109 = Ra_xx*t103 + Ra_yx*t104 + Ra_zx*t105 + Rb_xx*t106 + Rb_yx*t107 + Rb_zx*t108
+                t110 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t111 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t112 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t113 = Ra_xy*t103 + Ra_yy*t104 + Ra_zy*t105 + Rb_xx*t110 + Rb_yx*t111 + Rb_zx*t112
+                t114 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t115 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t116 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t117 = Ra_xz*t103 + Ra_yz*t104 + Ra_zz*t105 + Rb_xx*t114 + Rb_yx*t115 + Rb_zx*t116
+                t118 = d_x*t109 + d_y*t113 + d_z*t117
+                t119 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t120 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t121 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t122 = Ra_xx*t119 + Ra_yx*t120 + Ra_zx*t121 + Rb_xy*t106 + Rb_yy*t107 + Rb_zy*t108
+                t123 = Ra_xy*t119 + Ra_yy*t120 + Ra_zy*t121 + Rb_xy*t110 + Rb_yy*t111 + Rb_zy*t112
+                t124 = Ra_xz*t119 + Ra_yz*t120 + Ra_zz*t121 + Rb_xy*t114 + Rb_yy*t115 + Rb_zy*t116
+                t125 = d_x*t122 + d_y*t123 + d_z*t124
+                t126 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t127 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t128 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t129 = Ra_xx*t126 + Ra_yx*t127 + Ra_zx*t128 + Rb_xz*t106 + Rb_yz*t107 + Rb_zz*t108
+                t130 = Ra_xy*t126 + Ra_yy*t127 + Ra_zy*t128 + Rb_xz*t110 + Rb_yz*t111 + Rb_zz*t112
+                t131 = Ra_xz*t126 + Ra_yz*t127 + Ra_zz*t128 + Rb_xz*t114 + Rb_yz*t115 + Rb_zz*t116
+                t132 = d_x*t129 + d_y*t130 + d_z*t131
+                t133 = Oma_x*d_y - Oma_y*d_x
+                t134 = -Oma_x*d_z + Oma_z*d_x
+                t135 = Oma_y*d_z - Oma_z*d_y
+                t136 = -Omb_y*t132 + Omb_z*t125 + t109*t135 + t113*t134 + t117*t133
+                t137 = Omb_x*t132 - Omb_z*t118 + t122*t135 + t123*t134 + t124*t133
+                t138 = -Omb_x*t125 + Omb_y*t118 + t129*t135 + t130*t134 + t131*t133
+                t139 = -d_x*utha_y + d_y*utha_x
+                t140 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t141 = d_x*utha_z - d_z*utha_x
+                t142 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t143 = -d_y*utha_z + d_z*utha_y
+                t144 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t145 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t146 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t147 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t148 = d_x*t145 + d_y*t146 + d_z*t147
+                t149 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t150 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t151 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t152 = d_x*t149 + d_y*t150 + d_z*t151
+                t153 = t139*t140 + t141*t142 + t143*t144 + t148*uthb_z - t152*uthb_y
+                t154 = d_x*t144 + d_y*t142 + d_z*t140
+                t155 = t139*t147 + t141*t146 + t143*t145 + t152*uthb_x - t154*uthb_z
+                t156 = t139*t151 + t141*t150 + t143*t149 - t148*uthb_x + t154*uthb_y
+                t157 = -m_x*n_y + m_y*n_x
+                t158 = m_x*n_z - m_z*n_x
+                t159 = -m_y*n_z + m_z*n_y
+                dangle_seen_1 = t118
+                dangle_seen_2 = t125
+                dangle_seen_3 = t132
+                dangle_along_n = n_x*t136 + n_y*t137 + n_z*t138
+                uangle_along_n = n_x*t153 + n_y*t155 + n_z*t156
+                dangle_along_m = m_x*t136 + m_y*t137 + m_z*t138
+                uangle_along_m = m_x*t153 + m_y*t155 + m_z*t156
+                daxis_1 = t103*t159 + t119*t158 + t126*t157
+                daxis_2 = t104*t159 + t120*t158 + t127*t157
+                daxis_3 = t105*t159 + t121*t158 + t128*t157
+                t160 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t161 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t162 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t163 = d_y*t161 - d_z*t162
+                t164 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t165 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t166 = d_y*t164 - d_z*t165
+                t167 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t168 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t169 = d_y*t167 - d_z*t168
+                t170 = n_x*t163 + n_y*t166 + n_z*t169
+                t171 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t172 = m_x*t163 + m_y*t166 + m_z*t169
+                t173 = -t160*t170 + t171*t172
+                t174 = t160*t160 + t171*t171
+                t175 = 1/t174
+                t176 = (c_damping*t175*(dfriction_by_angle_along_m*uangle_along_m +
                     dfriction_by_angle_along_n*uangle_along_n))
-                t145 = (t143*(dangle_along_m*dfriction_by_angle_along_m +
+                t177 = (t175*(dangle_along_m*dfriction_by_angle_along_m +
                     dangle_along_n*dfriction_by_angle_along_n +
                     dangle_seen_1*dfriction_by_angle_seen_1 +
                     dangle_seen_2*dfriction_by_angle_seen_2 +
-                    dangle_seen_3*dfriction_by_angle_seen_3))
-                t146 = dangle_seen_1*m_x
-                t147 = dangle_seen_2*m_y
-                t148 = dangle_seen_3*m_z
-                t149 = dangle_seen_1*n_x
-                t150 = dangle_seen_2*n_y
-                t151 = dangle_seen_3*n_z
-                t152 = ((friction*(-t128*(2*t146 + 2*t147 + 2*t148) - t139*(2*t149 + 2*t150 +
-                    2*t151)))/(t142*t142))
-                t153 = t146 + t147 + t148
-                t154 = t149 + t150 + t151
-                t155 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t156 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t157 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t158 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t159 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t160 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t161 = Ra_xz*t155 + Ra_yz*t156 + Ra_zz*t157 + Rb_xx*t158 + Rb_yx*t159 + Rb_zx*t160
-                t162 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t163 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t164 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t165 = Ra_xy*t155 + Ra_yy*t156 + Ra_zy*t157 + Rb_xx*t162 + Rb_yx*t163 + Rb_zx*t164
-                t166 = d_y*t161 - d_z*t165
-                t167 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t168 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t169 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t170 = Ra_xz*t167 + Ra_yz*t168 + Ra_zz*t169 + Rb_xy*t158 + Rb_yy*t159 + Rb_zy*t160
-                t171 = Ra_xy*t167 + Ra_yy*t168 + Ra_zy*t169 + Rb_xy*t162 + Rb_yy*t163 + Rb_zy*t164
-                t172 = d_y*t170 - d_z*t171
-                t173 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t174 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t175 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t176 = Ra_xz*t173 + Ra_yz*t174 + Ra_zz*t175 + Rb_xz*t158 + Rb_yz*t159 + Rb_zz*t160
-                t177 = Ra_xy*t173 + Ra_yy*t174 + Ra_zy*t175 + Rb_xz*t162 + Rb_yz*t163 + Rb_zz*t164
-                t178 = d_y*t176 - d_z*t177
-                t179 = friction*t143
-                t180 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t181 = -d_x*t129 + d_z*t180
-                t182 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t183 = -d_x*t132 + d_z*t182
-                t184 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t185 = -d_x*t135 + d_z*t184
-                t186 = n_x*t181 + n_y*t183 + n_z*t185
-                t187 = m_x*t181 + m_y*t183 + m_z*t185
-                t188 = -t128*t186 + t139*t187
-                t189 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t190 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t191 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t192 = Ra_xx*t155 + Ra_yx*t156 + Ra_zx*t157 + Rb_xx*t189 + Rb_yx*t190 + Rb_zx*t191
-                t193 = -d_x*t161 + d_z*t192
-                t194 = Ra_xx*t167 + Ra_yx*t168 + Ra_zx*t169 + Rb_xy*t189 + Rb_yy*t190 + Rb_zy*t191
-                t195 = -d_x*t170 + d_z*t194
-                t196 = Ra_xx*t173 + Ra_yx*t174 + Ra_zx*t175 + Rb_xz*t189 + Rb_yz*t190 + Rb_zz*t191
-                t197 = -d_x*t176 + d_z*t196
-                t198 = d_x*t130 - d_y*t180
-                t199 = d_x*t133 - d_y*t182
-                t200 = d_x*t136 - d_y*t184
-                t201 = n_x*t198 + n_y*t199 + n_z*t200
-                t202 = m_x*t198 + m_y*t199 + m_z*t200
-                t203 = -t128*t201 + t139*t202
-                t204 = d_x*t165 - d_y*t192
-                t205 = d_x*t171 - d_y*t194
-                t206 = d_x*t177 - d_y*t196
-                t207 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t208 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t209 = -t128*t208 + t139*t207
-                t210 = angle_seen_1*m_z - angle_seen_3*m_x
-                t211 = angle_seen_1*n_z - angle_seen_3*n_x
-                t212 = -t128*t211 + t139*t210
-                t213 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t214 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t215 = -t128*t214 + t139*t213
-                J[column] = (c_stiffness*(t141*t145 + t141*t152 + t179*(-t128*(n_x*t166 + n_y*t172
-                    + n_z*t178) - t138*t153 + t139*(m_x*t166 + m_y*t172 + m_z*t178) + t140*t154))
-                    + t141*t144)
-                J[10 + column] = (c_stiffness*(t145*t188 + t152*t188 + t179*(-t128*(n_x*t193 +
-                    n_y*t195 + n_z*t197) + t139*(m_x*t193 + m_y*t195 + m_z*t197) - t153*t186 +
-                    t154*t187)) + t144*t188)
-                J[20 + column] = (c_stiffness*(t145*t203 + t152*t203 + t179*(-t128*(n_x*t204 +
-                    n_y*t205 + n_z*t206) + t139*(m_x*t204 + m_y*t205 + m_z*t206) - t153*t201 +
-                    t154*t202)) + t144*t203)
-                J[30 + column] = (c_stiffness*(t145*t209 + t152*t209 +
-                    t179*(-t128*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
-                    t139*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t153*t208 + t154*t207)) +
-                    t144*t209)
-                J[40 + column] = (c_stiffness*(t145*t212 + t152*t212 +
-                    t179*(-t128*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t139*(dangle_seen_1*m_z
-                    - dangle_seen_3*m_x) - t153*t211 + t154*t210)) + t144*t212)
-                J[50 + column] = (c_stiffness*(t145*t215 + t152*t215 +
-                    t179*(-t128*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
-                    t139*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t153*t214 + t154*t213)) +
-                    t144*t215)
+                    dangle_seen_3*dfriction_by_angle_seen_3 + daxis_1*dfriction_by_axis_1 +
+                    daxis_2*dfriction_by_axis_2 + daxis_3*dfriction_by_axis_3))
+                t178 = dangle_seen_1*m_x
+                t179 = dangle_seen_2*m_y
+                t180 = dangle_seen_3*m_z
+                t181 = dangle_seen_1*n_x
+                t182 = dangle_seen_2*n_y
+                t183 = dangle_seen_3*n_z
+                t184 = ((friction*(-t160*(2*t178 + 2*t179 + 2*t180) - t171*(2*t181 + 2*t182 +
+                    2*t183)))/(t174*t174))
+                t185 = t178 + t179 + t180
+                t186 = t181 + t182 + t183
+                t187 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t188 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t189 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t190 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t191 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t192 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t193 = Ra_xz*t187 + Ra_yz*t188 + Ra_zz*t189 + Rb_xx*t190 + Rb_yx*t191 + Rb_zx*t192
+                t194 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t195 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t196 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t197 = Ra_xy*t187 + Ra_yy*t188 + Ra_zy*t189 + Rb_xx*t194 + Rb_yx*t195 + Rb_zx*t196
+                t198 = d_y*t193 - d_z*t197
+                t199 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t200 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t201 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t202 = Ra_xz*t199 + Ra_yz*t200 + Ra_zz*t201 + Rb_xy*t190 + Rb_yy*t191 + Rb_zy*t192
+                t203 = Ra_xy*t199 + Ra_yy*t200 + Ra_zy*t201 + Rb_xy*t194 + Rb_yy*t195 + Rb_zy*t196
+                t204 = d_y*t202 - d_z*t203
+                t205 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t206 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t207 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t208 = Ra_xz*t205 + Ra_yz*t206 + Ra_zz*t207 + Rb_xz*t190 + Rb_yz*t191 + Rb_zz*t192
+                t209 = Ra_xy*t205 + Ra_yy*t206 + Ra_zy*t207 + Rb_xz*t194 + Rb_yz*t195 + Rb_zz*t196
+                t210 = d_y*t208 - d_z*t209
+                t211 = friction*t175
+                t212 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t213 = -d_x*t161 + d_z*t212
+                t214 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t215 = -d_x*t164 + d_z*t214
+                t216 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t217 = -d_x*t167 + d_z*t216
+                t218 = n_x*t213 + n_y*t215 + n_z*t217
+                t219 = m_x*t213 + m_y*t215 + m_z*t217
+                t220 = -t160*t218 + t171*t219
+                t221 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t222 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t223 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t224 = Ra_xx*t187 + Ra_yx*t188 + Ra_zx*t189 + Rb_xx*t221 + Rb_yx*t222 + Rb_zx*t223
+                t225 = -d_x*t193 + d_z*t224
+                t226 = Ra_xx*t199 + Ra_yx*t200 + Ra_zx*t201 + Rb_xy*t221 + Rb_yy*t222 + Rb_zy*t223
+                t227 = -d_x*t202 + d_z*t226
+                t228 = Ra_xx*t205 + Ra_yx*t206 + Ra_zx*t207 + Rb_xz*t221 + Rb_yz*t222 + Rb_zz*t223
+                t229 = -d_x*t208 + d_z*t228
+                t230 = d_x*t162 - d_y*t212
+                t231 = d_x*t165 - d_y*t214
+                t232 = d_x*t168 - d_y*t216
+                t233 = n_x*t230 + n_y*t231 + n_z*t232
+                t234 = m_x*t230 + m_y*t231 + m_z*t232
+                t235 = -t160*t233 + t171*t234
+                t236 = d_x*t197 - d_y*t224
+                t237 = d_x*t203 - d_y*t226
+                t238 = d_x*t209 - d_y*t228
+                t239 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t240 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t241 = -t160*t240 + t171*t239
+                t242 = angle_seen_1*m_z - angle_seen_3*m_x
+                t243 = angle_seen_1*n_z - angle_seen_3*n_x
+                t244 = -t160*t243 + t171*t242
+                t245 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t246 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t247 = -t160*t246 + t171*t245
+                J[column] = (c_stiffness*(t173*t177 + t173*t184 + t211*(-t160*(n_x*t198 + n_y*t204
+                    + n_z*t210) - t170*t185 + t171*(m_x*t198 + m_y*t204 + m_z*t210) + t172*t186))
+                    + t173*t176)
+                J[10 + column] = (c_stiffness*(t177*t220 + t184*t220 + t211*(-t160*(n_x*t225 +
+                    n_y*t227 + n_z*t229) + t171*(m_x*t225 + m_y*t227 + m_z*t229) - t185*t218 +
+                    t186*t219)) + t176*t220)
+                J[20 + column] = (c_stiffness*(t177*t235 + t184*t235 + t211*(-t160*(n_x*t236 +
+                    n_y*t237 + n_z*t238) + t171*(m_x*t236 + m_y*t237 + m_z*t238) - t185*t233 +
+                    t186*t234)) + t176*t235)
+                J[30 + column] = (c_stiffness*(t177*t241 + t184*t241 +
+                    t211*(-t160*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t171*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t185*t240 + t186*t239)) +
+                    t176*t241)
+                J[40 + column] = (c_stiffness*(t177*t244 + t184*t244 +
+                    t211*(-t160*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t171*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t185*t243 + t186*t242)) + t176*t244)
+                J[50 + column] = (c_stiffness*(t177*t247 + t184*t247 +
+                    t211*(-t160*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t171*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t185*t246 + t186*t245)) +
+                    t176*t247)
                 J[60 + column] = 0.0
                 J[70 + column] = 0.0
                 J[80 + column] = 0.0

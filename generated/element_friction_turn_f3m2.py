@@ -38,6 +38,8 @@ CONSTANTS = (
     Part("radius", (), "lever arm of the friction force; 1 along an axis [length]"),
     Part("preload", (), "normal force that is always there"),
     Part("per_moment", (), "one over the arm that turns moments into normal forces [1/length]"),
+    Part("across", (), "square of the share of the force across the axis in the normal force"),
+    Part("along", (), "likewise of the force along the axis"),
     Part("d", (3,), "direction normal to the axis, in axes of body a"),
     Part("n", (3,), "where it is at angle zero, in axes of body b"),
     Part("m", (3,), "and at a right angle, in axes of body b"),
@@ -52,7 +54,7 @@ POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
 OPERATIONS = {"residual": (158, 0, 0, 0),
-              "column": (513, 0, 0, 0)}
+              "column": (519, 0, 0, 0)}
 
 
 @kernel_function
@@ -72,15 +74,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         radius = constant[5]
         preload = constant[6]
         per_moment = constant[7]
-        d_x = constant[8]
-        d_y = constant[9]
-        d_z = constant[10]
-        n_x = constant[11]
-        n_y = constant[12]
-        n_z = constant[13]
-        m_x = constant[14]
-        m_y = constant[15]
-        m_z = constant[16]
+        across = constant[8]
+        along = constant[9]
+        d_x = constant[10]
+        d_y = constant[11]
+        d_z = constant[12]
+        n_x = constant[13]
+        n_y = constant[14]
+        n_z = constant[15]
+        m_x = constant[16]
+        m_y = constant[17]
+        m_z = constant[18]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -132,72 +136,82 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t15 = -Omb_y*t11 + Omb_z*t7 + t0*t14 + t1*t13 + t12*t2
         t16 = Omb_x*t11 - Omb_z*t3 + t12*t6 + t13*t5 + t14*t4
         t17 = -Omb_x*t7 + Omb_y*t3 + t10*t12 + t13*t9 + t14*t8
+        t18 = -m_y*n_z + m_z*n_y
+        t19 = m_x*n_z - m_z*n_x
+        t20 = -m_x*n_y + m_y*n_x
         angle_seen_1 = t3
         angle_seen_2 = t7
         angle_seen_3 = t11
         angle_along_n = n_x*t15 + n_y*t16 + n_z*t17
         angle_along_m = m_x*t15 + m_y*t16 + m_z*t17
-        t18 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-        t19 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t20 = atan2(t18, t19)
+        axis_1 = Rb_xx*t18 + Rb_xy*t19 + Rb_xz*t20
+        axis_2 = Rb_yx*t18 + Rb_yy*t19 + Rb_yz*t20
+        axis_3 = Rb_zx*t18 + Rb_zy*t19 + Rb_zz*t20
+        t21 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+        t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+        t23 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+        t24 = atan2(t22, t23)
         pressed = (radius*(per_moment*sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300) +
-            preload + sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)))
-        increment_1 = (-kept_angle + t20 + 6.283185307179586*floor(0.15915494309189535*kept_angle
-            - 0.15915494309189535*t20 + 0.5))
-        slip_1 = (angle_along_m*t19 - angle_along_n*t18)/(t18*t18 + t19*t19)
+            preload + sqrt(across*((-axis_1*t21 + force_1)*(-axis_1*t21 + force_1) + (-axis_2*t21
+            + force_2)*(-axis_2*t21 + force_2) + (-axis_3*t21 + force_3)*(-axis_3*t21 + force_3))
+            + along*t21*t21 + 1e-300)))
+        increment_1 = (-kept_angle + t24 + 6.283185307179586*floor(0.15915494309189535*kept_angle
+            - 0.15915494309189535*t24 + 0.5))
+        slip_1 = (angle_along_m*t23 - angle_along_n*t22)/(t22*t22 + t23*t23)
         z = increment_1*kept_begun + kept_bent
         dynamic_limit = coefficient*pressed
         static_limit = pressed*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial = bristle*z + bristle_damping*slip_1
         bent_size = sqrt(z*z + 1e-300)
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
-        t21 = slip_speed/speed
+        t25 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t25) + (t25*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
         slips = 1.0 if speed > 0.0 else (1.0 if -static_limit + trial_size > 0.0 else 0.0)
         friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
             -static_limit + trial_size > 0.0 else trial))
-        t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-        t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-        t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-        t25 = d_y*t23 - d_z*t24
-        t26 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-        t27 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-        t28 = d_y*t26 - d_z*t27
-        t29 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-        t30 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-        t31 = d_y*t29 - d_z*t30
-        t32 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t33 = friction/(t22*t22 + t32*t32)
-        t34 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-        t35 = -d_x*t23 + d_z*t34
-        t36 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-        t37 = -d_x*t26 + d_z*t36
-        t38 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-        t39 = -d_x*t29 + d_z*t38
-        t40 = d_x*t24 - d_y*t34
-        t41 = d_x*t27 - d_y*t36
-        t42 = d_x*t30 - d_y*t38
-        t43 = atan2(t22, t32)
-        g[0] = t33*(-t22*(n_x*t25 + n_y*t28 + n_z*t31) + t32*(m_x*t25 + m_y*t28 + m_z*t31))
-        g[1] = t33*(-t22*(n_x*t35 + n_y*t37 + n_z*t39) + t32*(m_x*t35 + m_y*t37 + m_z*t39))
-        g[2] = t33*(-t22*(n_x*t40 + n_y*t41 + n_z*t42) + t32*(m_x*t40 + m_y*t41 + m_z*t42))
-        g[3] = (t33*(-t22*(-angle_seen_2*n_z + angle_seen_3*n_y) + t32*(-angle_seen_2*m_z +
+        t26 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+        t27 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+        t28 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+        t29 = d_y*t27 - d_z*t28
+        t30 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+        t31 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+        t32 = d_y*t30 - d_z*t31
+        t33 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+        t34 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+        t35 = d_y*t33 - d_z*t34
+        t36 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+        t37 = friction/(t26*t26 + t36*t36)
+        t38 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+        t39 = -d_x*t27 + d_z*t38
+        t40 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+        t41 = -d_x*t30 + d_z*t40
+        t42 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+        t43 = -d_x*t33 + d_z*t42
+        t44 = d_x*t28 - d_y*t38
+        t45 = d_x*t31 - d_y*t40
+        t46 = d_x*t34 - d_y*t42
+        t47 = atan2(t26, t36)
+        t48 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+        g[0] = t37*(-t26*(n_x*t29 + n_y*t32 + n_z*t35) + t36*(m_x*t29 + m_y*t32 + m_z*t35))
+        g[1] = t37*(-t26*(n_x*t39 + n_y*t41 + n_z*t43) + t36*(m_x*t39 + m_y*t41 + m_z*t43))
+        g[2] = t37*(-t26*(n_x*t44 + n_y*t45 + n_z*t46) + t36*(m_x*t44 + m_y*t45 + m_z*t46))
+        g[3] = (t37*(-t26*(-angle_seen_2*n_z + angle_seen_3*n_y) + t36*(-angle_seen_2*m_z +
             angle_seen_3*m_y)))
-        g[4] = (t33*(-t22*(angle_seen_1*n_z - angle_seen_3*n_x) + t32*(angle_seen_1*m_z -
+        g[4] = (t37*(-t26*(angle_seen_1*n_z - angle_seen_3*n_x) + t36*(angle_seen_1*m_z -
             angle_seen_3*m_x)))
-        g[5] = (t33*(-t22*(-angle_seen_1*n_y + angle_seen_2*n_x) + t32*(-angle_seen_1*m_y +
+        g[5] = (t37*(-t26*(-angle_seen_1*n_y + angle_seen_2*n_x) + t36*(-angle_seen_1*m_y +
             angle_seen_2*m_x)))
         g[6] = 0.0
         g[7] = 0.0
         g[8] = 0.0
         g[9] = 0.0
         g[10] = 0.0
-        frames[index[first + AT_FRAME]] = (t43 +
-            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t43 +
+        frames[index[first + AT_FRAME]] = (t47 +
+            6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t47 +
             0.5))
         frames[index[first + AT_FRAME] + 1] = (z*(0.0 if speed > 0.0 else
             ((dynamic_limit/(bent_size*bristle) if bent_size*bristle - dynamic_limit > 0.0 else
@@ -205,8 +219,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         frames[index[first + AT_FRAME] + 2] = slips
         frames[index[first + AT_FRAME] + 3] = 1.0
         frames[index[first + AT_FRAME] + 4] = (per_moment*sqrt(moment_1*moment_1 +
-            moment_2*moment_2 + 1e-300) + preload + sqrt(force_1*force_1 + force_2*force_2 +
-            force_3*force_3 + 1e-300))
+            moment_2*moment_2 + 1e-300) + preload + sqrt(across*((-axis_1*t48 +
+            force_1)*(-axis_1*t48 + force_1) + (-axis_2*t48 + force_2)*(-axis_2*t48 + force_2) +
+            (-axis_3*t48 + force_3)*(-axis_3*t48 + force_3)) + along*t48*t48 + 1e-300))
         if task == ENERGY:
             t900 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
             t901 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
@@ -270,42 +285,78 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             J = at(matrices, element*WIDTH*WIDTH)
             dq = work
             du = at(work, WIDTH)
-            t44 = radius/sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)
-            t45 = per_moment*radius/sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
-            t46 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t47 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t48 = t46*t46 + t47*t47
-            t49 = 1/t48
-            t50 = t46*t49
-            t51 = -t47*t49
-            t52 = 2*t47
-            t53 = 2*t46
-            t54 = (angle_along_m*t46 - angle_along_n*t47)/(t48*t48)
-            dpressed_by_force_1 = force_1*t44
-            dpressed_by_force_2 = force_2*t44
-            dpressed_by_force_3 = force_3*t44
-            dpressed_by_moment_1 = moment_1*t45
-            dpressed_by_moment_2 = moment_2*t45
-            dincrement_1_by_angle_seen_1 = m_x*t50 + n_x*t51
-            dincrement_1_by_angle_seen_2 = m_y*t50 + n_y*t51
-            dincrement_1_by_angle_seen_3 = m_z*t50 + n_z*t51
-            dslip_1_by_angle_seen_1 = (t49*(angle_along_m*n_x - angle_along_n*m_x) + t54*(-m_x*t52
-                - n_x*t53))
-            dslip_1_by_angle_seen_2 = (t49*(angle_along_m*n_y - angle_along_n*m_y) + t54*(-m_y*t52
-                - n_y*t53))
-            dslip_1_by_angle_seen_3 = (t49*(angle_along_m*n_z - angle_along_n*m_z) + t54*(-m_z*t52
-                - n_z*t53))
-            dslip_1_by_angle_along_n = t51
-            dslip_1_by_angle_along_m = t50
+            t49 = axis_1*force_1
+            t50 = axis_2*force_2
+            t51 = axis_3*force_3
+            t52 = t49 + t50 + t51
+            t53 = along*t52
+            t54 = 2*force_1
+            t55 = axis_2*t52
+            t56 = force_2 - t55
+            t57 = axis_2*t56
+            t58 = axis_3*t52
+            t59 = force_3 - t58
+            t60 = axis_3*t59
+            t61 = 2*t50
+            t62 = 2*t51
+            t63 = axis_1*t52
+            t64 = force_1 - t63
+            t65 = (0.5)*across
+            t66 = radius/sqrt(across*(t56*t56 + t59*t59 + t64*t64) + along*t52*t52 + 1e-300)
+            t67 = 2*force_2
+            t68 = axis_1*t64
+            t69 = 2*t49
+            t70 = 2*force_3
+            t71 = 2*axis_1
+            t72 = 2*axis_2
+            t73 = 2*axis_3
+            t74 = per_moment*radius/sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
+            t75 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t76 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t77 = t75*t75 + t76*t76
+            t78 = 1/t77
+            t79 = t75*t78
+            t80 = -t76*t78
+            t81 = 2*t76
+            t82 = 2*t75
+            t83 = (angle_along_m*t75 - angle_along_n*t76)/(t77*t77)
+            dpressed_by_axis_1 = (t66*(force_1*t53 + t65*(-t54*t57 - t54*t60 + t64*(-4*t49 - t61 -
+                t62))))
+            dpressed_by_axis_2 = (t66*(force_2*t53 + t65*(t56*(-4*t50 - t62 - t69) - t60*t67 -
+                t67*t68)))
+            dpressed_by_axis_3 = (t66*(force_3*t53 + t65*(-t57*t70 + t59*(-4*t51 - t61 - t69) -
+                t68*t70)))
+            dpressed_by_force_1 = (t66*(along*t63 + t65*(-t57*t71 - t60*t71 + t64*(2 -
+                2*axis_1*axis_1))))
+            dpressed_by_force_2 = (t66*(along*t55 + t65*(t56*(2 - 2*axis_2*axis_2) - t60*t72 -
+                t68*t72)))
+            dpressed_by_force_3 = (t66*(along*t58 + t65*(-t57*t73 + t59*(2 - 2*axis_3*axis_3) -
+                t68*t73)))
+            dpressed_by_moment_1 = moment_1*t74
+            dpressed_by_moment_2 = moment_2*t74
+            dincrement_1_by_angle_seen_1 = m_x*t79 + n_x*t80
+            dincrement_1_by_angle_seen_2 = m_y*t79 + n_y*t80
+            dincrement_1_by_angle_seen_3 = m_z*t79 + n_z*t80
+            dslip_1_by_angle_seen_1 = (t78*(angle_along_m*n_x - angle_along_n*m_x) + t83*(-m_x*t81
+                - n_x*t82))
+            dslip_1_by_angle_seen_2 = (t78*(angle_along_m*n_y - angle_along_n*m_y) + t83*(-m_y*t81
+                - n_y*t82))
+            dslip_1_by_angle_seen_3 = (t78*(angle_along_m*n_z - angle_along_n*m_z) + t83*(-m_z*t81
+                - n_z*t82))
+            dslip_1_by_angle_along_n = t80
+            dslip_1_by_angle_along_m = t79
             dz_by_angle_seen_1 = dincrement_1_by_angle_seen_1*kept_begun
             dz_by_angle_seen_2 = dincrement_1_by_angle_seen_2*kept_begun
             dz_by_angle_seen_3 = dincrement_1_by_angle_seen_3*kept_begun
+            ddynamic_limit_by_axis_1 = coefficient*dpressed_by_axis_1
+            ddynamic_limit_by_axis_2 = coefficient*dpressed_by_axis_2
+            ddynamic_limit_by_axis_3 = coefficient*dpressed_by_axis_3
             ddynamic_limit_by_force_1 = coefficient*dpressed_by_force_1
             ddynamic_limit_by_force_2 = coefficient*dpressed_by_force_2
             ddynamic_limit_by_force_3 = coefficient*dpressed_by_force_3
             ddynamic_limit_by_moment_1 = coefficient*dpressed_by_moment_1
             ddynamic_limit_by_moment_2 = coefficient*dpressed_by_moment_2
-            t55 = slip_1/sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
+            t84 = slip_1/sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
             dtrial_by_angle_seen_1 = (bristle*dz_by_angle_seen_1 +
                 bristle_damping*dslip_1_by_angle_seen_1)
             dtrial_by_angle_seen_2 = (bristle*dz_by_angle_seen_2 +
@@ -314,65 +365,71 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 bristle_damping*dslip_1_by_angle_seen_3)
             dtrial_by_angle_along_n = bristle_damping*dslip_1_by_angle_along_n
             dtrial_by_angle_along_m = bristle_damping*dslip_1_by_angle_along_m
-            dslip_speed_by_angle_seen_1 = dslip_1_by_angle_seen_1*t55
-            dslip_speed_by_angle_seen_2 = dslip_1_by_angle_seen_2*t55
-            dslip_speed_by_angle_seen_3 = dslip_1_by_angle_seen_3*t55
-            dslip_speed_by_angle_along_n = dslip_1_by_angle_along_n*t55
-            dslip_speed_by_angle_along_m = dslip_1_by_angle_along_m*t55
-            t56 = trial/sqrt(trial*trial + 1e-300)
-            t57 = slip_speed*slip_speed
-            t58 = 1/speed
-            t59 = 4*t58
-            t60 = tanh(slip_speed*t59)
-            t61 = -coefficient + static
-            t62 = 0.75 + ((0.25)*t57)/(speed*speed)
-            t63 = (t58*t61)/(t62*t62)
-            t64 = coefficient*t60 + slip_speed*t63
-            t65 = 1/slip_speed
-            t66 = (pressed*t65*(coefficient*t59*(1 - t60*t60) + t63 +
-                (-t57*t61)/(speed*speed*speed*t62*t62*t62)) - pressed*t64/t57 if speed > 0.0 else
+            dslip_speed_by_angle_seen_1 = dslip_1_by_angle_seen_1*t84
+            dslip_speed_by_angle_seen_2 = dslip_1_by_angle_seen_2*t84
+            dslip_speed_by_angle_seen_3 = dslip_1_by_angle_seen_3*t84
+            dslip_speed_by_angle_along_n = dslip_1_by_angle_along_n*t84
+            dslip_speed_by_angle_along_m = dslip_1_by_angle_along_m*t84
+            t85 = trial/sqrt(trial*trial + 1e-300)
+            t86 = slip_speed*slip_speed
+            t87 = 1/speed
+            t88 = 4*t87
+            t89 = tanh(slip_speed*t88)
+            t90 = -coefficient + static
+            t91 = 0.75 + ((0.25)*t86)/(speed*speed)
+            t92 = (t87*t90)/(t91*t91)
+            t93 = coefficient*t89 + slip_speed*t92
+            t94 = 1/slip_speed
+            t95 = (pressed*t94*(coefficient*t88*(1 - t89*t89) + t92 +
+                (-t86*t90)/(speed*speed*speed*t91*t91*t91)) - pressed*t93/t86 if speed > 0.0 else
                 0)
-            t67 = t64*t65 if speed > 0.0 else 0
-            dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t56
-            dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t56
-            dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t56
-            dtrial_size_by_angle_along_n = dtrial_by_angle_along_n*t56
-            dtrial_size_by_angle_along_m = dtrial_by_angle_along_m*t56
-            ddrag_by_angle_seen_1 = dslip_speed_by_angle_seen_1*t66
-            ddrag_by_angle_seen_2 = dslip_speed_by_angle_seen_2*t66
-            ddrag_by_angle_seen_3 = dslip_speed_by_angle_seen_3*t66
-            ddrag_by_angle_along_n = dslip_speed_by_angle_along_n*t66
-            ddrag_by_angle_along_m = dslip_speed_by_angle_along_m*t66
-            ddrag_by_force_1 = dpressed_by_force_1*t67
-            ddrag_by_force_2 = dpressed_by_force_2*t67
-            ddrag_by_force_3 = dpressed_by_force_3*t67
-            ddrag_by_moment_1 = dpressed_by_moment_1*t67
-            ddrag_by_moment_2 = dpressed_by_moment_2*t67
-            t68 = slip_1 if speed > 0.0 else 0
-            t69 = drag if speed > 0.0 else 0
-            t70 = -static_limit + trial_size
-            t71 = 1/trial_size
-            t72 = 0 if speed > 0.0 else (dynamic_limit*t71 if t70 > 0.0 else 1)
-            t73 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t70 >
+            t96 = t93*t94 if speed > 0.0 else 0
+            dtrial_size_by_angle_seen_1 = dtrial_by_angle_seen_1*t85
+            dtrial_size_by_angle_seen_2 = dtrial_by_angle_seen_2*t85
+            dtrial_size_by_angle_seen_3 = dtrial_by_angle_seen_3*t85
+            dtrial_size_by_angle_along_n = dtrial_by_angle_along_n*t85
+            dtrial_size_by_angle_along_m = dtrial_by_angle_along_m*t85
+            ddrag_by_angle_seen_1 = dslip_speed_by_angle_seen_1*t95
+            ddrag_by_angle_seen_2 = dslip_speed_by_angle_seen_2*t95
+            ddrag_by_angle_seen_3 = dslip_speed_by_angle_seen_3*t95
+            ddrag_by_angle_along_n = dslip_speed_by_angle_along_n*t95
+            ddrag_by_angle_along_m = dslip_speed_by_angle_along_m*t95
+            ddrag_by_axis_1 = dpressed_by_axis_1*t96
+            ddrag_by_axis_2 = dpressed_by_axis_2*t96
+            ddrag_by_axis_3 = dpressed_by_axis_3*t96
+            ddrag_by_force_1 = dpressed_by_force_1*t96
+            ddrag_by_force_2 = dpressed_by_force_2*t96
+            ddrag_by_force_3 = dpressed_by_force_3*t96
+            ddrag_by_moment_1 = dpressed_by_moment_1*t96
+            ddrag_by_moment_2 = dpressed_by_moment_2*t96
+            t97 = slip_1 if speed > 0.0 else 0
+            t98 = drag if speed > 0.0 else 0
+            t99 = -static_limit + trial_size
+            t100 = 1/trial_size
+            t101 = 0 if speed > 0.0 else (dynamic_limit*t100 if t99 > 0.0 else 1)
+            t102 = (0 if speed > 0.0 else ((-dynamic_limit*trial)/(trial_size*trial_size) if t99 >
                 0.0 else 0))
-            t74 = 0 if speed > 0.0 else (t71*trial if t70 > 0.0 else 0)
-            dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t68 + dslip_1_by_angle_seen_1*t69 +
-                dtrial_by_angle_seen_1*t72 + dtrial_size_by_angle_seen_1*t73)
-            dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t68 + dslip_1_by_angle_seen_2*t69 +
-                dtrial_by_angle_seen_2*t72 + dtrial_size_by_angle_seen_2*t73)
-            dfriction_by_angle_seen_3 = (ddrag_by_angle_seen_3*t68 + dslip_1_by_angle_seen_3*t69 +
-                dtrial_by_angle_seen_3*t72 + dtrial_size_by_angle_seen_3*t73)
-            dfriction_by_angle_along_n = (ddrag_by_angle_along_n*t68 +
-                dslip_1_by_angle_along_n*t69 + dtrial_by_angle_along_n*t72 +
-                dtrial_size_by_angle_along_n*t73)
-            dfriction_by_angle_along_m = (ddrag_by_angle_along_m*t68 +
-                dslip_1_by_angle_along_m*t69 + dtrial_by_angle_along_m*t72 +
-                dtrial_size_by_angle_along_m*t73)
-            dfriction_by_force_1 = ddrag_by_force_1*t68 + ddynamic_limit_by_force_1*t74
-            dfriction_by_force_2 = ddrag_by_force_2*t68 + ddynamic_limit_by_force_2*t74
-            dfriction_by_force_3 = ddrag_by_force_3*t68 + ddynamic_limit_by_force_3*t74
-            dfriction_by_moment_1 = ddrag_by_moment_1*t68 + ddynamic_limit_by_moment_1*t74
-            dfriction_by_moment_2 = ddrag_by_moment_2*t68 + ddynamic_limit_by_moment_2*t74
+            t103 = 0 if speed > 0.0 else (t100*trial if t99 > 0.0 else 0)
+            dfriction_by_angle_seen_1 = (ddrag_by_angle_seen_1*t97 + dslip_1_by_angle_seen_1*t98 +
+                dtrial_by_angle_seen_1*t101 + dtrial_size_by_angle_seen_1*t102)
+            dfriction_by_angle_seen_2 = (ddrag_by_angle_seen_2*t97 + dslip_1_by_angle_seen_2*t98 +
+                dtrial_by_angle_seen_2*t101 + dtrial_size_by_angle_seen_2*t102)
+            dfriction_by_angle_seen_3 = (ddrag_by_angle_seen_3*t97 + dslip_1_by_angle_seen_3*t98 +
+                dtrial_by_angle_seen_3*t101 + dtrial_size_by_angle_seen_3*t102)
+            dfriction_by_angle_along_n = (ddrag_by_angle_along_n*t97 +
+                dslip_1_by_angle_along_n*t98 + dtrial_by_angle_along_n*t101 +
+                dtrial_size_by_angle_along_n*t102)
+            dfriction_by_angle_along_m = (ddrag_by_angle_along_m*t97 +
+                dslip_1_by_angle_along_m*t98 + dtrial_by_angle_along_m*t101 +
+                dtrial_size_by_angle_along_m*t102)
+            dfriction_by_axis_1 = ddrag_by_axis_1*t97 + ddynamic_limit_by_axis_1*t103
+            dfriction_by_axis_2 = ddrag_by_axis_2*t97 + ddynamic_limit_by_axis_2*t103
+            dfriction_by_axis_3 = ddrag_by_axis_3*t97 + ddynamic_limit_by_axis_3*t103
+            dfriction_by_force_1 = ddrag_by_force_1*t97 + ddynamic_limit_by_force_1*t103
+            dfriction_by_force_2 = ddrag_by_force_2*t97 + ddynamic_limit_by_force_2*t103
+            dfriction_by_force_3 = ddrag_by_force_3*t97 + ddynamic_limit_by_force_3*t103
+            dfriction_by_moment_1 = ddrag_by_moment_1*t97 + ddynamic_limit_by_moment_1*t103
+            dfriction_by_moment_2 = ddrag_by_moment_2*t97 + ddynamic_limit_by_moment_2*t103
             for column in range(6):
                 for i in range(6):
                     dq[i] = 0.0
@@ -393,181 +450,188 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[3]
                 uthb_y = du[4]
                 uthb_z = du[5]
-                t75 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t76 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t77 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t78 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t79 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t80 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t81 = Ra_xx*t75 + Ra_yx*t76 + Ra_zx*t77 + Rb_xx*t78 + Rb_yx*t79 + Rb_zx*t80
-                t82 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t83 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t84 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t85 = Ra_xy*t75 + Ra_yy*t76 + Ra_zy*t77 + Rb_xx*t82 + Rb_yx*t83 + Rb_zx*t84
-                t86 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t87 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t88 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t89 = Ra_xz*t75 + Ra_yz*t76 + Ra_zz*t77 + Rb_xx*t86 + Rb_yx*t87 + Rb_zx*t88
-                t90 = d_x*t81 + d_y*t85 + d_z*t89
-                t91 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t92 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t93 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t94 = Ra_xx*t91 + Ra_yx*t92 + Ra_zx*t93 + Rb_xy*t78 + Rb_yy*t79 + Rb_zy*t80
-                t95 = Ra_xy*t91 + Ra_yy*t92 + Ra_zy*t93 + Rb_xy*t82 + Rb_yy*t83 + Rb_zy*t84
-                t96 = Ra_xz*t91 + Ra_yz*t92 + Ra_zz*t93 + Rb_xy*t86 + Rb_yy*t87 + Rb_zy*t88
-                t97 = d_x*t94 + d_y*t95 + d_z*t96
-                t98 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t99 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t100 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t101 = Ra_xx*t98 + Ra_yx*t99 + Ra_zx*t100 + Rb_xz*t78 + Rb_yz*t79 + Rb_zz*t80
-                t102 = Ra_xy*t98 + Ra_yy*t99 + Ra_zy*t100 + Rb_xz*t82 + Rb_yz*t83 + Rb_zz*t84
-                t103 = Ra_xz*t98 + Ra_yz*t99 + Ra_zz*t100 + Rb_xz*t86 + Rb_yz*t87 + Rb_zz*t88
-                t104 = d_x*t101 + d_y*t102 + d_z*t103
-                t105 = Oma_x*d_y - Oma_y*d_x
-                t106 = -Oma_x*d_z + Oma_z*d_x
-                t107 = Oma_y*d_z - Oma_z*d_y
-                t108 = -Omb_y*t104 + Omb_z*t97 + t105*t89 + t106*t85 + t107*t81
-                t109 = Omb_x*t104 - Omb_z*t90 + t105*t96 + t106*t95 + t107*t94
-                t110 = -Omb_x*t97 + Omb_y*t90 + t101*t107 + t102*t106 + t103*t105
-                t111 = -d_x*utha_y + d_y*utha_x
-                t112 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t113 = d_x*utha_z - d_z*utha_x
-                t114 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t115 = -d_y*utha_z + d_z*utha_y
-                t116 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t117 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t118 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t119 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t120 = d_x*t117 + d_y*t118 + d_z*t119
-                t121 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t122 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t123 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t124 = d_x*t121 + d_y*t122 + d_z*t123
-                t125 = t111*t112 + t113*t114 + t115*t116 + t120*uthb_z - t124*uthb_y
-                t126 = d_x*t116 + d_y*t114 + d_z*t112
-                t127 = t111*t119 + t113*t118 + t115*t117 + t124*uthb_x - t126*uthb_z
-                t128 = t111*t123 + t113*t122 + t115*t121 - t120*uthb_x + t126*uthb_y
-                dangle_seen_1 = t90
-                dangle_seen_2 = t97
-                dangle_seen_3 = t104
-                dangle_along_n = n_x*t108 + n_y*t109 + n_z*t110
-                uangle_along_n = n_x*t125 + n_y*t127 + n_z*t128
-                dangle_along_m = m_x*t108 + m_y*t109 + m_z*t110
-                uangle_along_m = m_x*t125 + m_y*t127 + m_z*t128
-                t129 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-                t130 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t131 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t132 = d_y*t130 - d_z*t131
-                t133 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t134 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t135 = d_y*t133 - d_z*t134
-                t136 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t137 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t138 = d_y*t136 - d_z*t137
-                t139 = n_x*t132 + n_y*t135 + n_z*t138
-                t140 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-                t141 = m_x*t132 + m_y*t135 + m_z*t138
-                t142 = -t129*t139 + t140*t141
-                t143 = t129*t129 + t140*t140
-                t144 = 1/t143
-                t145 = (c_damping*t144*(dfriction_by_angle_along_m*uangle_along_m +
+                t104 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t105 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t106 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t107 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t108 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t109 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t110 = Ra_xx*t104 + Ra_yx*t105 + Ra_zx*t106 + Rb_xx*t107 + Rb_yx*t108 + Rb_zx*t109
+                t111 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t112 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t113 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t114 = Ra_xy*t104 + Ra_yy*t105 + Ra_zy*t106 + Rb_xx*t111 + Rb_yx*t112 + Rb_zx*t113
+                t115 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t116 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t117 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t118 = Ra_xz*t104 + Ra_yz*t105 + Ra_zz*t106 + Rb_xx*t115 + Rb_yx*t116 + Rb_zx*t117
+                t119 = d_x*t110 + d_y*t114 + d_z*t118
+                t120 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t121 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t122 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t123 = Ra_xx*t120 + Ra_yx*t121 + Ra_zx*t122 + Rb_xy*t107 + Rb_yy*t108 + Rb_zy*t109
+                t124 = Ra_xy*t120 + Ra_yy*t121 + Ra_zy*t122 + Rb_xy*t111 + Rb_yy*t112 + Rb_zy*t113
+                t125 = Ra_xz*t120 + Ra_yz*t121 + Ra_zz*t122 + Rb_xy*t115 + Rb_yy*t116 + Rb_zy*t117
+                t126 = d_x*t123 + d_y*t124 + d_z*t125
+                t127 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t128 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t129 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t130 = Ra_xx*t127 + Ra_yx*t128 + Ra_zx*t129 + Rb_xz*t107 + Rb_yz*t108 + Rb_zz*t109
+                t131 = Ra_xy*t127 + Ra_yy*t128 + Ra_zy*t129 + Rb_xz*t111 + Rb_yz*t112 + Rb_zz*t113
+                t132 = Ra_xz*t127 + Ra_yz*t128 + Ra_zz*t129 + Rb_xz*t115 + Rb_yz*t116 + Rb_zz*t117
+                t133 = d_x*t130 + d_y*t131 + d_z*t132
+                t134 = Oma_x*d_y - Oma_y*d_x
+                t135 = -Oma_x*d_z + Oma_z*d_x
+                t136 = Oma_y*d_z - Oma_z*d_y
+                t137 = -Omb_y*t133 + Omb_z*t126 + t110*t136 + t114*t135 + t118*t134
+                t138 = Omb_x*t133 - Omb_z*t119 + t123*t136 + t124*t135 + t125*t134
+                t139 = -Omb_x*t126 + Omb_y*t119 + t130*t136 + t131*t135 + t132*t134
+                t140 = -d_x*utha_y + d_y*utha_x
+                t141 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t142 = d_x*utha_z - d_z*utha_x
+                t143 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t144 = -d_y*utha_z + d_z*utha_y
+                t145 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t146 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t147 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t148 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t149 = d_x*t146 + d_y*t147 + d_z*t148
+                t150 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t151 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t152 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t153 = d_x*t150 + d_y*t151 + d_z*t152
+                t154 = t140*t141 + t142*t143 + t144*t145 + t149*uthb_z - t153*uthb_y
+                t155 = d_x*t145 + d_y*t143 + d_z*t141
+                t156 = t140*t148 + t142*t147 + t144*t146 + t153*uthb_x - t155*uthb_z
+                t157 = t140*t152 + t142*t151 + t144*t150 - t149*uthb_x + t155*uthb_y
+                t158 = -m_x*n_y + m_y*n_x
+                t159 = m_x*n_z - m_z*n_x
+                t160 = -m_y*n_z + m_z*n_y
+                dangle_seen_1 = t119
+                dangle_seen_2 = t126
+                dangle_seen_3 = t133
+                dangle_along_n = n_x*t137 + n_y*t138 + n_z*t139
+                uangle_along_n = n_x*t154 + n_y*t156 + n_z*t157
+                dangle_along_m = m_x*t137 + m_y*t138 + m_z*t139
+                uangle_along_m = m_x*t154 + m_y*t156 + m_z*t157
+                daxis_1 = t104*t160 + t120*t159 + t127*t158
+                daxis_2 = t105*t160 + t121*t159 + t128*t158
+                daxis_3 = t106*t160 + t122*t159 + t129*t158
+                t161 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+                t162 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t163 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t164 = d_y*t162 - d_z*t163
+                t165 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t166 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t167 = d_y*t165 - d_z*t166
+                t168 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t169 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t170 = d_y*t168 - d_z*t169
+                t171 = n_x*t164 + n_y*t167 + n_z*t170
+                t172 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+                t173 = m_x*t164 + m_y*t167 + m_z*t170
+                t174 = -t161*t171 + t172*t173
+                t175 = t161*t161 + t172*t172
+                t176 = 1/t175
+                t177 = (c_damping*t176*(dfriction_by_angle_along_m*uangle_along_m +
                     dfriction_by_angle_along_n*uangle_along_n))
-                t146 = (t144*(dangle_along_m*dfriction_by_angle_along_m +
+                t178 = (t176*(dangle_along_m*dfriction_by_angle_along_m +
                     dangle_along_n*dfriction_by_angle_along_n +
                     dangle_seen_1*dfriction_by_angle_seen_1 +
                     dangle_seen_2*dfriction_by_angle_seen_2 +
-                    dangle_seen_3*dfriction_by_angle_seen_3))
-                t147 = dangle_seen_1*m_x
-                t148 = dangle_seen_2*m_y
-                t149 = dangle_seen_3*m_z
-                t150 = dangle_seen_1*n_x
-                t151 = dangle_seen_2*n_y
-                t152 = dangle_seen_3*n_z
-                t153 = ((friction*(-t129*(2*t147 + 2*t148 + 2*t149) - t140*(2*t150 + 2*t151 +
-                    2*t152)))/(t143*t143))
-                t154 = t147 + t148 + t149
-                t155 = t150 + t151 + t152
-                t156 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t157 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t158 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t159 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t160 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t161 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t162 = Ra_xz*t156 + Ra_yz*t157 + Ra_zz*t158 + Rb_xx*t159 + Rb_yx*t160 + Rb_zx*t161
-                t163 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t164 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t165 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t166 = Ra_xy*t156 + Ra_yy*t157 + Ra_zy*t158 + Rb_xx*t163 + Rb_yx*t164 + Rb_zx*t165
-                t167 = d_y*t162 - d_z*t166
-                t168 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t169 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t170 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t171 = Ra_xz*t168 + Ra_yz*t169 + Ra_zz*t170 + Rb_xy*t159 + Rb_yy*t160 + Rb_zy*t161
-                t172 = Ra_xy*t168 + Ra_yy*t169 + Ra_zy*t170 + Rb_xy*t163 + Rb_yy*t164 + Rb_zy*t165
-                t173 = d_y*t171 - d_z*t172
-                t174 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t175 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t176 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t177 = Ra_xz*t174 + Ra_yz*t175 + Ra_zz*t176 + Rb_xz*t159 + Rb_yz*t160 + Rb_zz*t161
-                t178 = Ra_xy*t174 + Ra_yy*t175 + Ra_zy*t176 + Rb_xz*t163 + Rb_yz*t164 + Rb_zz*t165
-                t179 = d_y*t177 - d_z*t178
-                t180 = friction*t144
-                t181 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t182 = -d_x*t130 + d_z*t181
-                t183 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t184 = -d_x*t133 + d_z*t183
-                t185 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t186 = -d_x*t136 + d_z*t185
-                t187 = n_x*t182 + n_y*t184 + n_z*t186
-                t188 = m_x*t182 + m_y*t184 + m_z*t186
-                t189 = -t129*t187 + t140*t188
-                t190 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t191 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t192 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t193 = Ra_xx*t156 + Ra_yx*t157 + Ra_zx*t158 + Rb_xx*t190 + Rb_yx*t191 + Rb_zx*t192
-                t194 = -d_x*t162 + d_z*t193
-                t195 = Ra_xx*t168 + Ra_yx*t169 + Ra_zx*t170 + Rb_xy*t190 + Rb_yy*t191 + Rb_zy*t192
-                t196 = -d_x*t171 + d_z*t195
-                t197 = Ra_xx*t174 + Ra_yx*t175 + Ra_zx*t176 + Rb_xz*t190 + Rb_yz*t191 + Rb_zz*t192
-                t198 = -d_x*t177 + d_z*t197
-                t199 = d_x*t131 - d_y*t181
-                t200 = d_x*t134 - d_y*t183
-                t201 = d_x*t137 - d_y*t185
-                t202 = n_x*t199 + n_y*t200 + n_z*t201
-                t203 = m_x*t199 + m_y*t200 + m_z*t201
-                t204 = -t129*t202 + t140*t203
-                t205 = d_x*t166 - d_y*t193
-                t206 = d_x*t172 - d_y*t195
-                t207 = d_x*t178 - d_y*t197
-                t208 = -angle_seen_2*m_z + angle_seen_3*m_y
-                t209 = -angle_seen_2*n_z + angle_seen_3*n_y
-                t210 = -t129*t209 + t140*t208
-                t211 = angle_seen_1*m_z - angle_seen_3*m_x
-                t212 = angle_seen_1*n_z - angle_seen_3*n_x
-                t213 = -t129*t212 + t140*t211
-                t214 = -angle_seen_1*m_y + angle_seen_2*m_x
-                t215 = -angle_seen_1*n_y + angle_seen_2*n_x
-                t216 = -t129*t215 + t140*t214
-                J[column] = (c_stiffness*(t142*t146 + t142*t153 + t180*(-t129*(n_x*t167 + n_y*t173
-                    + n_z*t179) - t139*t154 + t140*(m_x*t167 + m_y*t173 + m_z*t179) + t141*t155))
-                    + t142*t145)
-                J[11 + column] = (c_stiffness*(t146*t189 + t153*t189 + t180*(-t129*(n_x*t194 +
-                    n_y*t196 + n_z*t198) + t140*(m_x*t194 + m_y*t196 + m_z*t198) - t154*t187 +
-                    t155*t188)) + t145*t189)
-                J[22 + column] = (c_stiffness*(t146*t204 + t153*t204 + t180*(-t129*(n_x*t205 +
-                    n_y*t206 + n_z*t207) + t140*(m_x*t205 + m_y*t206 + m_z*t207) - t154*t202 +
-                    t155*t203)) + t145*t204)
-                J[33 + column] = (c_stiffness*(t146*t210 + t153*t210 +
-                    t180*(-t129*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
-                    t140*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t154*t209 + t155*t208)) +
-                    t145*t210)
-                J[44 + column] = (c_stiffness*(t146*t213 + t153*t213 +
-                    t180*(-t129*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t140*(dangle_seen_1*m_z
-                    - dangle_seen_3*m_x) - t154*t212 + t155*t211)) + t145*t213)
-                J[55 + column] = (c_stiffness*(t146*t216 + t153*t216 +
-                    t180*(-t129*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
-                    t140*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t154*t215 + t155*t214)) +
-                    t145*t216)
+                    dangle_seen_3*dfriction_by_angle_seen_3 + daxis_1*dfriction_by_axis_1 +
+                    daxis_2*dfriction_by_axis_2 + daxis_3*dfriction_by_axis_3))
+                t179 = dangle_seen_1*m_x
+                t180 = dangle_seen_2*m_y
+                t181 = dangle_seen_3*m_z
+                t182 = dangle_seen_1*n_x
+                t183 = dangle_seen_2*n_y
+                t184 = dangle_seen_3*n_z
+                t185 = ((friction*(-t161*(2*t179 + 2*t180 + 2*t181) - t172*(2*t182 + 2*t183 +
+                    2*t184)))/(t175*t175))
+                t186 = t179 + t180 + t181
+                t187 = t182 + t183 + t184
+                t188 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t189 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t190 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t191 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t192 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t193 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t194 = Ra_xz*t188 + Ra_yz*t189 + Ra_zz*t190 + Rb_xx*t191 + Rb_yx*t192 + Rb_zx*t193
+                t195 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t196 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t197 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t198 = Ra_xy*t188 + Ra_yy*t189 + Ra_zy*t190 + Rb_xx*t195 + Rb_yx*t196 + Rb_zx*t197
+                t199 = d_y*t194 - d_z*t198
+                t200 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t201 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t202 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t203 = Ra_xz*t200 + Ra_yz*t201 + Ra_zz*t202 + Rb_xy*t191 + Rb_yy*t192 + Rb_zy*t193
+                t204 = Ra_xy*t200 + Ra_yy*t201 + Ra_zy*t202 + Rb_xy*t195 + Rb_yy*t196 + Rb_zy*t197
+                t205 = d_y*t203 - d_z*t204
+                t206 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t207 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t208 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t209 = Ra_xz*t206 + Ra_yz*t207 + Ra_zz*t208 + Rb_xz*t191 + Rb_yz*t192 + Rb_zz*t193
+                t210 = Ra_xy*t206 + Ra_yy*t207 + Ra_zy*t208 + Rb_xz*t195 + Rb_yz*t196 + Rb_zz*t197
+                t211 = d_y*t209 - d_z*t210
+                t212 = friction*t176
+                t213 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t214 = -d_x*t162 + d_z*t213
+                t215 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t216 = -d_x*t165 + d_z*t215
+                t217 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t218 = -d_x*t168 + d_z*t217
+                t219 = n_x*t214 + n_y*t216 + n_z*t218
+                t220 = m_x*t214 + m_y*t216 + m_z*t218
+                t221 = -t161*t219 + t172*t220
+                t222 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t223 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t224 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t225 = Ra_xx*t188 + Ra_yx*t189 + Ra_zx*t190 + Rb_xx*t222 + Rb_yx*t223 + Rb_zx*t224
+                t226 = -d_x*t194 + d_z*t225
+                t227 = Ra_xx*t200 + Ra_yx*t201 + Ra_zx*t202 + Rb_xy*t222 + Rb_yy*t223 + Rb_zy*t224
+                t228 = -d_x*t203 + d_z*t227
+                t229 = Ra_xx*t206 + Ra_yx*t207 + Ra_zx*t208 + Rb_xz*t222 + Rb_yz*t223 + Rb_zz*t224
+                t230 = -d_x*t209 + d_z*t229
+                t231 = d_x*t163 - d_y*t213
+                t232 = d_x*t166 - d_y*t215
+                t233 = d_x*t169 - d_y*t217
+                t234 = n_x*t231 + n_y*t232 + n_z*t233
+                t235 = m_x*t231 + m_y*t232 + m_z*t233
+                t236 = -t161*t234 + t172*t235
+                t237 = d_x*t198 - d_y*t225
+                t238 = d_x*t204 - d_y*t227
+                t239 = d_x*t210 - d_y*t229
+                t240 = -angle_seen_2*m_z + angle_seen_3*m_y
+                t241 = -angle_seen_2*n_z + angle_seen_3*n_y
+                t242 = -t161*t241 + t172*t240
+                t243 = angle_seen_1*m_z - angle_seen_3*m_x
+                t244 = angle_seen_1*n_z - angle_seen_3*n_x
+                t245 = -t161*t244 + t172*t243
+                t246 = -angle_seen_1*m_y + angle_seen_2*m_x
+                t247 = -angle_seen_1*n_y + angle_seen_2*n_x
+                t248 = -t161*t247 + t172*t246
+                J[column] = (c_stiffness*(t174*t178 + t174*t185 + t212*(-t161*(n_x*t199 + n_y*t205
+                    + n_z*t211) - t171*t186 + t172*(m_x*t199 + m_y*t205 + m_z*t211) + t173*t187))
+                    + t174*t177)
+                J[11 + column] = (c_stiffness*(t178*t221 + t185*t221 + t212*(-t161*(n_x*t226 +
+                    n_y*t228 + n_z*t230) + t172*(m_x*t226 + m_y*t228 + m_z*t230) - t186*t219 +
+                    t187*t220)) + t177*t221)
+                J[22 + column] = (c_stiffness*(t178*t236 + t185*t236 + t212*(-t161*(n_x*t237 +
+                    n_y*t238 + n_z*t239) + t172*(m_x*t237 + m_y*t238 + m_z*t239) - t186*t234 +
+                    t187*t235)) + t177*t236)
+                J[33 + column] = (c_stiffness*(t178*t242 + t185*t242 +
+                    t212*(-t161*(-dangle_seen_2*n_z + dangle_seen_3*n_y) +
+                    t172*(-dangle_seen_2*m_z + dangle_seen_3*m_y) - t186*t241 + t187*t240)) +
+                    t177*t242)
+                J[44 + column] = (c_stiffness*(t178*t245 + t185*t245 +
+                    t212*(-t161*(dangle_seen_1*n_z - dangle_seen_3*n_x) + t172*(dangle_seen_1*m_z
+                    - dangle_seen_3*m_x) - t186*t244 + t187*t243)) + t177*t245)
+                J[55 + column] = (c_stiffness*(t178*t248 + t185*t248 +
+                    t212*(-t161*(-dangle_seen_1*n_y + dangle_seen_2*n_x) +
+                    t172*(-dangle_seen_1*m_y + dangle_seen_2*m_x) - t186*t247 + t187*t246)) +
+                    t177*t248)
                 J[66 + column] = 0.0
                 J[77 + column] = 0.0
                 J[88 + column] = 0.0

@@ -208,7 +208,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         speed_beyond = (side*(-ratio*(angle_2_along_m*t42 - angle_2_along_n*t43)/(t42*t42 +
             t43*t43) + (angle_1_along_m*t40 - angle_1_along_n*t41)/(t40*t40 + t41*t41)))
         touches = 1.0 if beyond > 0.0 else 0.0
-        depth = beyond if beyond > 0.0 else 1e-300
+        depth = (beyond if beyond > 0.0 else 1e-300) if -lower + upper > 0.0 else beyond + 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
         push = elastic*factor if factor > 0.0 else 0.0
@@ -458,7 +458,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 angle_2_along_n*m2_z) - t120*(-m2_z*t118 - n2_z*t119)))
             dspeed_beyond_by_angle_2_along_n = t114*t121
             dspeed_beyond_by_angle_2_along_m = -t115*t121
-            t122 = 1 if beyond > 0.0 else 0
+            t122 = (1 if beyond > 0.0 else 0) if -lower + upper > 0.0 else 1
             ddepth_by_angle_1_seen_1 = dbeyond_by_angle_1_seen_1*t122
             ddepth_by_angle_1_seen_2 = dbeyond_by_angle_1_seen_2*t122
             ddepth_by_angle_1_seen_3 = dbeyond_by_angle_1_seen_3*t122

@@ -86,7 +86,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         beyond = -t1 - upper if t0 > 0.0 else lower + t1
         speed_beyond = side*(angle_1_rate - angle_2_rate*ratio)
         touches = 1.0 if beyond > 0.0 else 0.0
-        depth = beyond if beyond > 0.0 else 1e-300
+        depth = (beyond if beyond > 0.0 else 1e-300) if -lower + upper > 0.0 else beyond + 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
         push = elastic*factor if factor > 0.0 else 0.0
@@ -133,7 +133,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             dbeyond_by_angle_2 = dvalue_by_angle_2*t8
             dspeed_beyond_by_angle_1_rate = side
             dspeed_beyond_by_angle_2_rate = -ratio*side
-            t9 = 1 if beyond > 0.0 else 0
+            t9 = (1 if beyond > 0.0 else 0) if -lower + upper > 0.0 else 1
             ddepth_by_angle_1 = dbeyond_by_angle_1*t9
             ddepth_by_angle_2 = dbeyond_by_angle_2*t9
             t10 = depth**exponent*exponent*stiffness/depth

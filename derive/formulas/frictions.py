@@ -4,7 +4,8 @@ The normal force is a preload, and what multipliers of the joint's equations pre
 those that are forces, and that of those that are moments over an arm.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import sympy as sp
@@ -21,12 +22,14 @@ from sebody.derive.formulas.elements import (
     rotation,
 )
 from sebody.derive.formulas.law_elements import Forces, Measures, law_element
-from sebody.derive.formulas.laws import Bristle, friction, length
+from sebody.derive.formulas.laws import TINY, Bristle, friction, length
 from sebody.derive.symbolic.rotations import cross
 
 BRISTLE = {"bristle": "stiffness of the bristles", "bristle_damping": "their damping",
            "coefficient": "coefficient of friction", "static": "the same of break-away",
            "speed": "reference speed of the smooth law, 0 for bristles"}
+TAKEN = {"across": "square of the share of the force across the axis in the normal force",
+         "along": "likewise of the force along the axis"}
 LOADED = {"radius": "lever arm of the friction force; 1 along an axis [length]",
           "preload": "normal force that is always there",
           "per_moment": "one over the arm that turns moments into normal forces [1/length]"}
@@ -45,9 +48,27 @@ def friction_turn(planar: bool, read: tuple[int, int]) -> Element:
     measures = Measures(blocks)
     vectors = [] if planar else turn_vectors(space)
     angle = Angle.of(measures, space, blocks, vectors, "angle")
-    return _joint_friction("turn", "friction about an axis", space, measures, read, vectors,
-                           [angle.value - kept("angle")], [angle.rate], [angle.velocity],
-                           [("angle", angle.value)])
+    pressed, taken = None, []
+    if read[0] and not planar:
+        taken = [constant(space, name, "scalar", meaning) for name, meaning in TAKEN.items()]
+        axis = sp.Matrix(measures.add_all("axis", blocks[1].state.symbols * cross(
+            *(v.symbols for v in vectors[1:]))))
+        pressed = partial(_pressed, axis, *(c.symbols[0] for c in taken))
+    return _joint_friction("turn", "friction about an axis", space, measures, read,
+                           [*taken, *vectors], [angle.value - kept("angle")], [angle.rate],
+                           [angle.velocity], [("angle", angle.value)], pressed=pressed)
+
+
+def _pressed(axis: sp.Matrix, across: sp.Symbol, along: sp.Symbol, forces: Sequence[sp.Symbol]
+             ) -> sp.Expr:
+    """What a force in global axes presses with in a bearing: across its axis, along it or both.
+
+    ``sqrt(across |f - a (a . f)|^2 + along (a . f)^2)``
+    """
+    force = sp.Matrix(forces)
+    axial = axis.dot(force)
+    radial = force - axis * axial
+    return sp.sqrt(across * radial.dot(radial) + along * axial**2 + TINY)
 
 
 def turn_vectors(space: Space, of: str = "") -> list[Constant]:
@@ -133,7 +154,8 @@ def friction_spherical(read: tuple[int, int]) -> Element:
 
 def _joint_friction(what: str, summary: str, space: Space, measures: Measures,
                     read: tuple[int, int], own: Sequence[Constant], increments, rates,
-                    full_rates, memory, lever: bool = True) -> Element:
+                    full_rates, memory, lever: bool = True,
+                    pressed: Callable[[Sequence[sp.Symbol]], sp.Expr] | None = None) -> Element:
     """The element of some increments and rates.
 
     Parameters
@@ -142,6 +164,8 @@ def _joint_friction(what: str, summary: str, space: Space, measures: Measures,
         Multipliers of the joint that are forces, and that are moments.
     lever : bool
         Whether the force acts at the radius; else measures are lengths already.
+    pressed : callable, optional
+        What the multipliers that are forces press with; by default their length.
     """
     constants, bristle = bristle_constants(space)
     loaded = [constant(space, name, "scalar", meaning) for name, meaning in LOADED.items()]
@@ -149,14 +173,14 @@ def _joint_friction(what: str, summary: str, space: Space, measures: Measures,
     forces, moments = sp.symbols(f"force_1:{read[0] + 1}"), sp.symbols(f"moment_1:{read[1] + 1}")
     normal = preload
     if forces:
-        normal += length(forces)
+        normal += length(forces) if pressed is None else pressed(forces)
     if moments:
         normal += per_moment * length(moments)
-    pressed = sp.Symbol("pressed")
+    push = sp.Symbol("pressed")
     ways, speeds = (sp.symbols([f"{word}_{k + 1}" for k in range(len(rates))])
                     for word in ("increment", "slip"))
-    law = friction(ways, speeds, pressed, bristle)
-    stages = (((pressed, (radius if lever else 1) * normal), *zip(ways, increments, strict=True),
+    law = friction(ways, speeds, push, bristle)
+    stages = (((push, (radius if lever else 1) * normal), *zip(ways, increments, strict=True),
                *zip(speeds, rates, strict=True)), *law.stages)
     name = ("planar_" * space.planar + f"friction_{what}"
             + "".join(f"_{word}{n}" for word, n in zip("fm", read, strict=True) if n))

@@ -96,17 +96,26 @@ def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr], normal: sp
 
 
 def impact(depth: sp.Expr, rate: sp.Expr, stiffness: sp.Symbol, exponent: sp.Symbol,
-           damping: sp.Symbol, slow: sp.Symbol) -> Law:
+           damping: sp.Symbol, slow: sp.Symbol, play: sp.Expr | None = None) -> Law:
     """Hunt and Crossley's contact law, ``F = k d^n (1 + c d')`` where d > 0, and never a pull.
 
     It keeps the rate and the speed of the impact, by which the time loop judges the length of a
     step: with longer steps the scheme makes energy (restitution 1.90 where 0.748 is right). Speeds
     up to `slow` are none.
+
+    Parameters
+    ----------
+    play : expression, optional
+        Of what presses on either side of it. Where it is zero the depth never is below zero, and at
+        a depth of zero there is the stiffness of both sides.
     """
     inside, touches = sp.symbols("depth touches")
+    pressed = choose(depth, depth, TINY)
+    if play is not None:
+        pressed = choose(play, pressed, depth + TINY)
     elastic, factor, push = sp.symbols("elastic factor push")
     stages = (((touches, choose(depth, sp.Float(1.0), sp.Float(0.0))),
-               (inside, choose(depth, depth, TINY))),
+               (inside, pressed)),
               ((elastic, stiffness * inside**exponent), (factor, 1 + damping * rate)),
               ((push, choose(factor, elastic * factor, sp.Float(0.0))),))
     largest = _largest(_largest(_size(rate), _size(kept("rate"))), kept("impact"))

@@ -77,7 +77,8 @@ def gear_play(planar: bool) -> Element:
     mesh = Angle(first.value - r * second.value, first.rate - r * second.rate,
                  first.velocity - r * second.velocity)
     return _stop("gear_play", "teeth of a pair of gears with play", space, measures,
-                 [ratio, *vectors], mesh, [("angle_1", first.value), ("angle_2", second.value)])
+                 [ratio, *vectors], mesh, [("angle_1", first.value), ("angle_2", second.value)],
+                 both_sides=True)
 
 
 def _mesh(space: Space) -> tuple[Measures, Constant, list[Constant], list[Angle]]:
@@ -94,14 +95,21 @@ def _mesh(space: Space) -> tuple[Measures, Constant, list[Constant], list[Angle]
 
 
 def _stop(name: str, summary: str, space: Space, measures: Measures, own: Sequence[Constant],
-          of: Angle, memory: Sequence[tuple[str, sp.Expr]]) -> Element:
-    """The element that keeps an angle or way between two limits."""
+          of: Angle, memory: Sequence[tuple[str, sp.Expr]], both_sides: bool = False) -> Element:
+    """The element that keeps an angle or way between two limits.
+
+    Parameters
+    ----------
+    both_sides : bool
+        Whether the limits may be one, where both press.
+    """
     constants = impact_constants(space)
     limits = [constant(space, limit, "scalar", meaning) for limit, meaning in LIMITS.items()]
     lower, upper = (c.symbols[0] for c in limits)
     value, side, depth, speed = sp.symbols("value side beyond speed_beyond")
     above, below = value - upper, lower - value
-    law = impact(depth, speed, *(c.symbols[0] for c in constants))
+    law = impact(depth, speed, *(c.symbols[0] for c in constants),
+                 play=upper - lower if both_sides else None)
     stages = (((value, of.value),),
               ((side, choose(above - below, sp.Float(1.0), sp.Float(-1.0))),
                (depth, choose(above - below, above, below))), ((speed, side * of.rate),),

@@ -22,6 +22,7 @@ from sebody.engine.mailbox import Shared
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
+from sebody.model.hinges import check_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
 
@@ -41,6 +42,7 @@ def build(model: Mechanism, threads: int = 1) -> tuple[System, Numbering]:
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     check_joints(model)
+    check_axes(model)
     numbering = number(model)
     if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")

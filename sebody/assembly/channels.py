@@ -25,13 +25,12 @@ from sebody.contract.law_row import (
 from sebody.contract.layout import RECORD
 from sebody.engine.control_data import CHANNEL_NUMBERS, CHANNEL_PLACES
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Joint, Node
+from sebody.model.parts import SLIDES, TURNS, DofBlock, Joint, Node, Way
 
 AXES = "xyz"
 OF_POSITION = {"position": "q", "velocity": "v", "acceleration": "a"}
 OF_ROTATION = {"angular_velocity": "v", "angular_acceleration": "a"}
 OF_MODES = {"modes": "q", "mode_rates": "v"}
-TURNS, SLIDES = ("revolute", "cylindrical"), ("prismatic", "slider", "cylindrical")
 
 
 class Channel(NamedTuple):
@@ -126,26 +125,23 @@ class _Channels:
 
     def _slide(self, joint: Joint, name: str) -> Channel | None:
         """Of a joint whose axis rests, or turns with a node."""
-        carrier: Node = joint.axes.carrier
-        other, sign = (joint.to, -1.0) if carrier is joint.node else (joint.node, 1.0)
+        carrier, other, way = joint.way
         rests = carrier.rotation.fixed and not carrier.rotation.motions
         if not self._known(other.position):
             return None
         if not rests:
-            return self._moving(carrier, other, sign, joint, name)
-        way = sign * joint.axes.columns[:, 0]
+            return self._moving(joint.way, name)
         start = 0.0
         if name == "displacement":
             start = -float(way @ (other.point - carrier.point * self._known(carrier.position)))
         return self._sum("q" if name == "displacement" else "v", other.position, way,
                          carrier.position, -way, start)
 
-    def _moving(self, carrier: Node, other: Node, sign: float, joint: Joint, name: str
-                ) -> Channel | None:
+    def _moving(self, along: Way, name: str) -> Channel | None:
         """The same of an axis that turns."""
+        carrier, other, way = along
         if not (self._known(carrier.position) and self._known(carrier.rotation)):
             return None
-        way = sign * joint.axes.columns[:, 0]
         turn = self._place("v", carrier.rotation)
         if self.model.planar:
             kinds, R = (FLAT_ALONG, FLAT_RATE), self._place("q", carrier.rotation)
@@ -154,8 +150,7 @@ class _Channels:
             R = self.at["R"].start + 9 * self.numbering.rotations[carrier.rotation]
         places = [self._place(part, node.position) for part in "qv" for node in (other, carrier)]
         if name == "displacement":
-            start = -float(way @ (other.point - carrier.point))
-            return _made(kinds[0], (R, *places[:2]), (start, *way))
+            return _made(kinds[0], (R, *places[:2]), (-along.start, *way))
         return _made(kinds[1], (R, *places, turn), (0.0, *way))
 
     def _sum(self, part: str, one: DofBlock | None, factors: NDArray,

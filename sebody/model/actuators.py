@@ -12,10 +12,9 @@ from sebody.model.arguments import chosen_name, dof_block, known, rotation_vecto
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
-from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
+from sebody.model.parts import SLIDES, TURNS, Attachment, Element, Joint, Node, positions, rotations
 from sebody.model.time_functions import TimeFunction
 
-TURNS, SLIDES = ("revolute", "cylindrical"), ("prismatic", "slider", "cylindrical")
 WAYS = "give joint= the name of one, between= two nodes, or node= and direction="
 
 
@@ -78,12 +77,12 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
                                       time_function))
     if direction is not None:
         raise InputError(f"{where}: a direction goes with node= alone; a joint has an axis")
-    way, sign, attachments, constants = (
+    way, attachments, constants = (
         _of_joint(model, where, joint, what) if joint is not None else
         _between(model, where, between, what))
     made = _added(model, Element(chosen_name(model, name, "actuator", ("signal",)),
                                  model.kind_of(f"{way}_motor"), attachments,
-                                 {"gain": sign * ratio, **constants}, time_function=time_function))
+                                 {"gain": ratio, **constants}, time_function=time_function))
     if inertia:
         model.loads.append(Element(
             chosen_name(model, None,
@@ -113,8 +112,8 @@ def _history(where: str, limit: float | tuple[float, float] | None, rate: float 
 
 
 def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
-              ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
-    """Way, sign, places and constants of an actuator in a joint."""
+              ) -> tuple[str, tuple[Attachment, ...], dict[str, float | NDArray]]:
+    """Way, places and constants of an actuator in a joint."""
     names = {one.name: one for one in model.joints}
     if isinstance(joint, str) and joint not in names:
         raise unknown("joint", joint, names, "the model has", "the model has none")
@@ -127,19 +126,14 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
     if what is None and len(kinds) > 1:
         raise InputError(f"{where}: {pair.name!r} slides and turns: give what='force' or 'torque'")
     chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
-    axis: dict[str, float | NDArray] = (
-        {} if model.planar and chosen == "torque" else {"e": pair.axis})
     if chosen == "torque":
-        return "turn", 1.0, rotations(pair.node, pair.to), axis
-    # the way is that of the other node in the axes of the carrier
-    carrier = pair.own_axes.carrier
-    other, sign = (pair.to, -1.0) if carrier is pair.node else (pair.node, 1.0)
-    return "slide", sign, positions(carrier, other) + rotations(carrier), axis
+        return "turn", rotations(pair.node, pair.to), {} if model.planar else {"e": pair.axis}
+    return "slide", pair.way.attachments, {"e": pair.way.direction}
 
 
 def _between(model: Mechanism, where: str, between: object,
              what: str | None
-             ) -> tuple[str, float, tuple[Attachment, ...], dict[str, float | NDArray]]:
+             ) -> tuple[str, tuple[Attachment, ...], dict[str, float | NDArray]]:
     if isinstance(between, str) or len(ends := inputs.items(
             between, f"{where}: between", "give two nodes")) != 2 or what == "torque":
         raise InputError(f"{where}: between is {inputs.shown(between)}: give two nodes, which a "
@@ -148,7 +142,7 @@ def _between(model: Mechanism, where: str, between: object,
     if not np.linalg.norm(b.point - a.point) > 0:
         raise InputError(f"{where}: nodes {a.name!r} and {b.name!r} coincide, so it has no "
                          "direction")
-    return "line", 1.0, positions(a, b), {}
+    return "line", positions(a, b), {}
 
 
 def _on_node(model: Mechanism, name: str, where: str, node: Node | str,
@@ -168,8 +162,8 @@ def _on_node(model: Mechanism, name: str, where: str, node: Node | str,
     if not constants["d"].any():
         raise InputError(f"{where} has the direction {inputs.shown(direction)}, along which it "
                          "pushes nothing: give one that is not zero")
-    return Element(chosen_name(model, name, "actuator", ("signal",)), model.kind_of(chosen), attachments,
-                   constants,
+    return Element(chosen_name(model, name, "actuator", ("signal",)), model.kind_of(chosen),
+                   attachments, constants,
                    time_function=time_function)
 
 

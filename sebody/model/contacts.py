@@ -15,12 +15,20 @@ from sebody.model.frictions import Dry, checked_friction, turning
 from sebody.model.impacts import impact_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
-from sebody.model.parts import BodyPoint, Element, Joint, Node, positions, rotations
+from sebody.model.parts import (
+    SLIDES,
+    TURNS,
+    BodyPoint,
+    Element,
+    Joint,
+    Node,
+    positions,
+    rotations,
+)
+from sebody.model.signs import warn_of_sign
 from sebody.model.surfaces import Surface
 
 DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
-TURNS = ("revolute",)
-SLIDES = ("prismatic", "slider", "cylindrical")
 
 
 def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
@@ -36,9 +44,9 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
     Parameters
     ----------
     of : Joint or str, or two nodes
-        A revolute joint or drive of an angle, [rad]; a prismatic or cylindrical joint, slider, or
-        drive of a way: of the second node along the axis, from the start; or the distance itself of
-        two nodes.
+        A revolute joint or drive of an angle, [rad], or a prismatic or cylindrical joint, slider,
+        or drive of a way: the angle or way of its `node` against `to` (the ground) about or along
+        the axis, from the start, as results have it; or the distance itself of two nodes.
     lower, upper : float, optional
         Limits [length] or [rad]; at least one.
     restitution : float
@@ -58,6 +66,8 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
         slides, or numbers that make no sense.
     """
     what, kind, attachments, own, start = _measured(model, of)
+    if kind == "slide_stop":
+        warn_of_sign(model, what, known_joint(model, of, "stop"))
     if lower is None and upper is None:
         raise InputError(f"{what}: it has no limit: give lower=, upper= or both")
     low = -np.inf if lower is None else inputs.number(lower, f"{what}: lower")
@@ -79,7 +89,7 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
 def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0,
             stiffness: float | None = None, restitution: float = 0.5, at_speed: float = 1.0,
             exponent: float = 1.5, friction: float = 0.0, static: float | None = None,
-            bristle: float | None = None, damping: float = 0.7, speed: float = 0.0,
+            bristle: float | None = None, damping: float | None = None, speed: float = 0.0,
             name: str | None = None) -> Element:
     """Contact of a sphere about a node, or of the node itself, with a surface.
 
@@ -101,7 +111,7 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     friction, static : float
         Coefficients of sliding and of break-away.
     bristle, damping, speed : float
-        See `friction`.
+        See `friction`; they need a coefficient.
 
     Raises
     ------
@@ -112,8 +122,8 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
     """
     if point := body_point(model, node, "contact"):
         return _inside(model, point, str(node), on, radius, impact_constants(
-            f"contact of {node!r}", restitution, at_speed, stiffness, exponent), checked_friction(
-                f"contact of {node!r}", friction, static, bristle, damping, speed, "friction"),
+            f"contact of {node!r}", restitution, at_speed, stiffness, exponent), _dry(
+                f"contact of {node!r}", friction, static, bristle, damping, speed),
             name)
     a = known(model, node)
     what = f"contact of {a.name!r}"
@@ -132,13 +142,25 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
                          "roll: make it with keeps='full', or give a point, radius=0")
     dof_block(b, "rotation")
     constants = impact_constants(what, restitution, at_speed, stiffness, exponent)
-    dry = checked_friction(what, friction, static, bristle, damping, speed, "friction")
+    dry = _dry(what, friction, static, bristle, damping, speed)
     name = chosen_name(model, name, what.replace("'", ""))
     kind = f"{'sphere' if r > 0 else 'point'}_on_{on.kind}"
     made = Element(name, model.kind_of(kind), attachments,
                    constants | dict(dry.constants) | {"radius": r} | shape, tuned=dry.tuned)
     model.loads.append(made)
     return made
+
+
+def _dry(what: str, friction: float, static: float | None, bristle: float | None,
+         damping: float | None, speed: float) -> Dry:
+    """Coefficients of the friction of a contact, of which none is given where there is none."""
+    dry = checked_friction(what, friction, static, bristle, damping, speed, "friction")
+    given = {"static": static, "bristle": bristle, "damping": damping, "speed": speed or None}
+    if not dry.constants["coefficient"] > 0 and (
+            unused := [f"{name}=" for name, value in given.items() if value is not None]):
+        raise InputError(f"{what} has {', '.join(unused)} and no friction: give friction=, the "
+                         "coefficient of sliding, or leave the rest out")
+    return dry
 
 
 def _inside(model: Mechanism, point: BodyPoint, called: str, on: Surface, radius: float,
@@ -183,15 +205,12 @@ def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, floa
     joint = known_joint(model, of, "stop")
     what = f"stop of {joint.name!r}"
     kind = joint.constraints[0].kind.removeprefix("planar_") if joint.kind == "drive" else ""
+    if joint.kind in SLIDES or kind == "slide_drive":
+        way = joint.way
+        return (what, "slide_stop", way.attachments, {"e": way.direction, "start": way.start}, 0.0)
     if joint.kind in TURNS or kind == "turn_drive":
         own = {} if model.planar else turning(joint.own_axes)
         return what, "turn_stop", rotations(joint.node, joint.to), own, 0.0
-    if joint.kind in SLIDES or kind == "slide_drive":
-        carrier = joint.own_axes.carrier
-        other = joint.to if carrier is joint.node else joint.node
-        e = joint.axis
-        return (what, "slide_stop", positions(carrier, other) + rotations(carrier),
-                {"e": e, "start": e @ (other.point - carrier.point)}, 0.0)
     raise InputError(f"{what}: a {joint.kind} has neither an angle nor a way: give a revolute, "
                      "prismatic or cylindrical joint, a slider or a drive, or two nodes")
 

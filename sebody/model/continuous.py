@@ -9,12 +9,11 @@ import numpy as np
 
 from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
-from sebody.model.actuators import SLIDES, TURNS
 from sebody.model.arguments import chosen_name
 from sebody.model.control_parts import Controller
 from sebody.model.histories import clock
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Attachment, DofBlock, Element, LawParts, Node
+from sebody.model.parts import SLIDES, TURNS, Attachment, DofBlock, Element, LawParts, Node
 from sebody.model.parts import positions as at_positions
 from sebody.model.parts import rotations as at_rotations
 

@@ -7,18 +7,10 @@ from numpy.typing import ArrayLike
 
 from sebody.basics.errors import InputError
 from sebody.model import motions
-from sebody.model.arguments import (
-    along,
-    chosen_name,
-    dof_block,
-    known,
-    rotation_vector,
-    turning_axes,
-    vector,
-)
+from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
+from sebody.model.hinges import about, check_axes, slide_of
 from sebody.model.histories import Source
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import pair
 from sebody.model.parts import (
     Attachment,
     Axes,
@@ -26,14 +18,15 @@ from sebody.model.parts import (
     Joint,
     Motion,
     Node,
-    positions,
+    Way,
     rotations,
 )
 from sebody.model.sharing import hold
+from sebody.model.signs import warn_of_sign
 
 
-def drive_angle(model: Mechanism, node: Node | str, motion: Source,
-                axis: ArrayLike = (0.0, 0.0, 1.0), to: Node | str | None = None,
+def drive_angle(model: Mechanism, node: Joint | Node | str, motion: Source,
+                axis: ArrayLike | None = None, to: Node | str | None = None,
                 name: str | None = None) -> Joint:
     """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
 
@@ -42,37 +35,64 @@ def drive_angle(model: Mechanism, node: Node | str, motion: Source,
 
     Parameters
     ----------
+    node : Joint, Node or str
+        A revolute or cylindrical joint, which has both nodes and the axis; or the node.
+    axis : (3,), optional
+        With a node: by default that of the one hinge between the nodes, or of the node; z where
+        there is none.
     motion : table, function, tuple of three functions or ready profile
         The angle, counted from where the nodes start: its value at t = 0 is taken off [rad]. A
         rate that it has at t = 0 is that of the start. See `sebody.model.motions.motion`.
+
+    Raises
+    ------
+    InputError
+        A joint that does not turn about one axis, hinges about several axes, an axis that the
+        joint between the nodes forbids.
     """
-    a, b = pair(model, node, to, "drive", ("rotation",))
+    a, b, vectors = about(model, node, axis, to, "drive")
     time_function = motions.motion(motion)
-    vectors = turning_axes(model, axis, "drive", a, signed=True)
     constants = dict(zip(("n", "m"), vectors[1:], strict=True)) if vectors else {}
     name = chosen_name(model, name, f"angle at {a.name}", ("node",))
     equation = Element(name, model.kind_of("turn_drive"), rotations(a, b), constants, 1,
                        time_function)
+    check_axes(model, [equation])
     return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
 
 
-def drive_slide(model: Mechanism, node: Node | str, motion: Source, axis: ArrayLike,
-                to: Node | str | None = None, name: str | None = None) -> Joint:
-    """Prescribe the displacement of `to` (a point of the ground) along an axis fixed in `node`.
+def drive_slide(model: Mechanism, node: Joint | Node | str, motion: Source,
+                axis: ArrayLike | None = None, to: Node | str | None = None,
+                name: str | None = None) -> Joint:
+    """Prescribe the displacement of `node` against `to` (the ground) along an axis fixed in `node`.
+
+    Its sign is that of the displacement of a prismatic joint, a slider and an actuator.
 
     Parameters
     ----------
+    node : Joint, Node or str
+        A prismatic or cylindrical joint or a slider, which has both nodes and the axis; or the
+        node.
     motion : table, function, tuple of three functions or ready profile
         The displacement, counted from where the nodes start [length]; see `drive_angle`.
+    axis : (3,), planar (2,)
+        With a node.
+
+    Raises
+    ------
+    InputError
+        A joint that does not slide, a node without an axis, an axis along which the joint between
+        the nodes does not slide.
     """
-    a, b = pair(model, node, to, "drive")
-    vectors = along(model, axis, "drive", a)
-    constants = {"e": vectors[0], "start": vectors[0] @ (b.point - a.point)}
+    a, b, carrier, axes = slide_of(model, node, axis, to, "drive")
+    way = Way.of(a, b, Axes(carrier, axes))
     time_function = motions.motion(motion)
     name = chosen_name(model, name, f"slide at {a.name}", ("node",))
-    equation = Element(name, model.kind_of("slide_drive"), positions(a, b) + rotations(a),
-                       constants, 1, time_function)
-    return _drive(model, Joint(name, (equation,), a, b, Axes.of(a, vectors), "drive"))
+    equation = Element(name, model.kind_of("slide_drive"), way.attachments,
+                       {"e": way.direction, "start": way.start}, 1, time_function)
+    check_axes(model, [equation])
+    drive = _drive(model, Joint(name, (equation,), a, b, Axes(carrier, axes), "drive"))
+    warn_of_sign(model, f"drive {name!r}", drive)
+    return drive
 
 
 def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Source,

@@ -23,6 +23,9 @@ KERNELS = {("revolute", False): "friction_turn_f3m2", ("universal", False): "fri
            ("revolute", True): "friction_turn_f2", ("spherical", True): "friction_turn_f2",
            ("prismatic", True): "friction_slide_f1m1", ("slider", True): "friction_slide_f1"}
 SLIDING = ("prismatic", "slider")
+BEARINGS = ("friction_turn_f3m2", "friction_turn_f3m1")
+TAKES = {"radial": (1.0, 0.0), "axial": (0.0, 1.0), "whole": (1.0, 1.0)}
+DAMPING = 0.7           # of bristles, relative to the critical one
 
 
 class Dry(NamedTuple):
@@ -34,14 +37,16 @@ class Dry(NamedTuple):
 
 def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: float | None = None,
              radius: float | None = None, preload: float = 0.0, arm: float | None = None,
-             reaction: bool = True, bristle: float | None = None, damping: float = 0.7,
-             speed: float = 0.0, slip: float | None = None, name: str | None = None
-             ) -> Element | tuple[Element, ...]:
+             reaction: bool = True, bristle: float | None = None,
+             damping: float | None = None, speed: float = 0.0, slip: float | None = None,
+             takes: str | None = None, name: str | None = None) -> Element | tuple[Element, ...]:
     """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
 
     The limit is the coefficient times the normal force, times the radius where the joint turns. The
     normal force is `preload` plus the force in the joint across its axis, plus its moment across
     the axis over `arm`. Joints of shared positions get equations, whose multipliers are this force.
+    The force along the axis of a hinge is that of a collar, with friction of its own: a second
+    `friction` in the joint that takes it.
 
     Sticking is elastic: bristles with a stiffness, which bend up to the limit and do not creep.
 
@@ -69,11 +74,14 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     slip : float, optional
         In place of `bristle`: displacement [length], or angle [rad], at which it gives way under
         the preload.
-    damping : float
-        Of this vibration, relative to the critical one.
+    damping : float, optional
+        Of this vibration, relative to the critical one; 0.7 by default.
+    takes : {'radial', 'axial', 'whole'}, optional
+        Which force in a revolute or universal joint in space presses: across the axis, as in a
+        journal, by default; along it, as on a collar of this `radius`; or its whole size.
     speed : float
         Reference speed of a smooth law without sticking (Brown and McPhee), for gradients
-        [length/time] or [rad/time]; 0 for bristles.
+        [length/time] or [rad/time]; 0 for bristles. It takes nothing that is of bristles.
 
     Returns
     -------
@@ -82,13 +90,15 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     Raises
     ------
     InputError
-        A negative coefficient, a static one below that of sliding, no radius, or a joint without
-        friction, such as a weld.
+        A negative coefficient, a static one below that of sliding, no radius, a smooth law with
+        bristles, or a joint without friction, such as a weld.
     """
     joint = _joint(model, joint)
     what = f"friction in {joint.name!r}"
     sliding = _sliding(joint)
     dry = checked_friction(what, coefficient, static, bristle, damping, speed)
+    if slip is not None:
+        _refuse_bristles(what, speed, slip=slip)
     if radius is None and not sliding:
         raise InputError(f"{what}: the joint turns, so its friction acts on a radius: give radius=")
     own_radius = 1.0 if radius is None else inputs.number(radius, f"{what}: radius", above=0)
@@ -103,8 +113,10 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
         raise InputError(f"{what}: nothing presses, since the force in it is not read: give "
                          "preload=" + " or reaction=True" * (joint.kind != "drive"))
     parts = _parts(model, joint, sliding, what)
-    name = chosen_name(model, name, what.replace("'", ""))
     kind = KERNELS[joint.kind, model.planar] if reads else _plain(joint, sliding, what)
+    if takes is not None or kind in BEARINGS:
+        constants |= _taken(what, joint, kind, takes)
+    name = chosen_name(model, name, what.replace("'", ""))
     if reads and not has_forces(joint):
         take_apart(model, joint)
     made = []
@@ -114,6 +126,15 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
                             pressed_by=joint if reads else None, tuned=dry.tuned))
     model.loads.extend(made)
     return made[0] if len(made) == 1 else tuple(made)
+
+
+def _taken(what: str, joint: Joint, kind: str, takes: str | None) -> dict[str, float]:
+    """Squares of the shares of the forces across and along the axis of a hinge."""
+    if kind not in BEARINGS:
+        raise InputError(f"{what}: takes is of revolute and universal joints in space whose force "
+                         f"is read, and this is a {joint.kind}: leave it out")
+    across, along = TAKES[inputs.choice(takes or "radial", f"{what}: takes", TAKES)]
+    return {"across": across, "along": along}
 
 
 def _stiffness(what: str, slip: float, bristle: float | None, limit: float) -> float:
@@ -129,7 +150,7 @@ def _stiffness(what: str, slip: float, bristle: float | None, limit: float) -> f
 
 
 def checked_friction(what: str, coefficient: float, static: float | None, bristle: float | None,
-                     damping: float, speed: float, called: str = "coefficient") -> Dry:
+                     damping: float | None, speed: float, called: str = "coefficient") -> Dry:
     """Check what all dry friction has; `called` is the argument with the coefficient."""
     mu = inputs.number(coefficient, f"{what}: {called}", least=0)
     break_away = mu if static is None else inputs.number(static, f"{what}: static", least=0)
@@ -138,10 +159,19 @@ def checked_friction(what: str, coefficient: float, static: float | None, bristl
                          f"{mu:g}: a body that slides would stick at a larger force; give at "
                          "least that")
     stiffness = 0.0 if bristle is None else inputs.number(bristle, f"{what}: bristle", above=0)
+    critical = DAMPING if damping is None else inputs.number(damping, f"{what}: damping", least=0)
+    smooth = inputs.number(speed, f"{what}: speed", least=0)
+    _refuse_bristles(what, smooth, bristle=bristle, damping=damping)
     return Dry({"bristle": stiffness, "bristle_damping": 0.0, "coefficient": mu,
-                "static": break_away,
-                "speed": inputs.number(speed, f"{what}: speed", least=0)},
-               {"damping": inputs.number(damping, f"{what}: damping", least=0)})
+                "static": break_away, "speed": smooth}, {"damping": critical})
+
+
+def _refuse_bristles(what: str, speed: float, **given: float | None) -> None:
+    """Refuse what is of bristles for the smooth law, which has none."""
+    for name, value in given.items():
+        if value is not None and speed > 0:
+            raise InputError(f"{what} has {name}= {value:g} and speed= {speed:g}, but the smooth "
+                             f"law of a speed has no bristles: give one of the two")
 
 
 def _joint(model: Mechanism, joint: Joint | str) -> Joint:
@@ -175,14 +205,11 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
         raise InputError(f"{what}: a {joint.kind} has no friction: use it in {', '.join(kinds)} "
                          "joints or in drives")
     a, b = joint.node, joint.to
-    if sliding or joint.kind == "cylindrical":
-        carrier = joint.own_axes.carrier
-        other = b if carrier is a else a
-        own: dict[str, float | NDArray] = {"e": joint.axis}
-        if joint.kind == "cylindrical":
-            return [(positions(carrier, other) + rotations(carrier, other),
-                     own | turning(joint.own_axes))]
-        return [(positions(carrier, other) + rotations(carrier), own)]
+    if sliding:
+        return [(joint.way.attachments, {"e": joint.way.direction})]
+    if joint.kind == "cylindrical":
+        return [(positions(a, b) + rotations(a, b),
+                 {"e": joint.way.direction} | turning(joint.own_axes))]
     if joint.kind == "spherical" and not model.planar:
         return [(rotations(a, b), {})]
     if joint.kind == "universal":

@@ -64,6 +64,7 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
              name: str | None = None) -> Joint:
     """Revolute joint about an axis through a node, to the ground or to another node.
 
+    Its angle is that of `node` against `to`, about the axis; so are limits, drives and actuators.
     Two multipliers in space, none in a plane: positions are shared or fixed.
     """
     what = "revolute joint"
@@ -99,7 +100,11 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
 
 def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
                 to: Node | str | None = None, name: str | None = None) -> Joint:
-    """Cylindrical joint: `to` slides along and turns about an axis fixed in `node`."""
+    """Cylindrical joint: `node` slides along and turns about an axis that is fixed in it.
+
+    Its displacement and angle are those of `node` against `to` (the ground), along and about the
+    axis; so are limits, drives and actuators.
+    """
     what = "cylindrical joint"
     _spatial(model, what)
     a, b = pair(model, node, to, what)
@@ -111,7 +116,11 @@ def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
 
 def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
               to: Node | str | None = None, name: str | None = None) -> Joint:
-    """Prismatic joint: `to` slides along an axis fixed in `node` and turns with it."""
+    """Prismatic joint: `node` slides along an axis that is fixed in it, and turns with `to`.
+
+    Its displacement is that of `node` against `to` (the ground) along the axis; so are limits,
+    drives and actuators.
+    """
     what = "prismatic joint"
     a, b = pair(model, node, to, what)
     vectors = along(model, axis, what, a)
@@ -122,7 +131,11 @@ def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
 
 def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
            to: Node | str | None = None, name: str | None = None) -> Joint:
-    """Point on a line: `node` slides along an axis through its place, fixed in `to`."""
+    """Point on a line: `node` slides along an axis through its place, fixed in `to`.
+
+    Its displacement is that of `node` against `to` (the ground) along the axis; so are limits,
+    drives and actuators.
+    """
     what = "slider"
     b, a = pair(model, node, to, what, ("position",))
     vectors = along(model, axis, what, b)

@@ -261,6 +261,37 @@ class Axes(NamedTuple):
                    np.column_stack(vectors))
 
 
+class Way(NamedTuple):
+    """A way along an axis that turns with a node: of a joint's `node` against its `to`.
+
+    In axes of the carrier it is ``direction . (other - carrier)``, less its value at the start.
+    """
+
+    carrier: Node
+    other: Node
+    direction: NDArray      # along the axis, or against it where the carrier is `node` of the joint
+
+    @classmethod
+    def of(cls, node: Node, to: Node, axes: Axes) -> "Way":
+        """That of `node` against `to` along the first of some axes, which turn with one of them."""
+        e = axes.columns[:, 0]
+        return cls(node, to, -e) if axes.carrier is node else cls(to, node, e)
+
+    @property
+    def attachments(self) -> tuple[Attachment, ...]:
+        """Where an element along the way acts."""
+        return positions(self.carrier, self.other) + rotations(self.carrier)
+
+    @property
+    def start(self) -> float:
+        """Its value at the start [length]."""
+        return float(self.direction @ (self.other.point - self.carrier.point))
+
+
+TURNS = ("revolute", "cylindrical")                 # joints with an angle
+SLIDES = ("prismatic", "slider", "cylindrical")     # joints with a way
+
+
 @dataclass(eq=False, repr=False)
 class Joint:
     """A joint or drive: its constraints; none if its nodes are fixed or share DOF blocks."""
@@ -287,6 +318,11 @@ class Joint:
     def axis(self) -> NDArray:
         """The first of its axes, at the start."""
         return self.own_axes.columns[:, 0]
+
+    @property
+    def way(self) -> Way:
+        """The way of `node` against `to` along its axis, where it slides."""
+        return Way.of(self.node, self.to, self.own_axes)
 
     @property
     def multipliers(self) -> int:

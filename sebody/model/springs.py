@@ -7,10 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.model.arguments import chosen_name, known, turning_axes
+from sebody.model.arguments import chosen_name, known
+from sebody.model.hinges import about, check_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
-from sebody.model.parts import Attachment, Element, Node, positions, rotations
+from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
 
 
 def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
@@ -41,24 +42,44 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
                 {"k": stiffness, "k3": cubic, "c": damping, "length": length})
 
 
-def torsion_spring(model: Mechanism, node: Node | str, stiffness: float = 0.0,
-                   damping: float = 0.0, axis: ArrayLike = (0.0, 0.0, 1.0),
+def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float = 0.0,
+                   damping: float = 0.0, axis: ArrayLike | None = None,
                    to: Node | str | None = None, rest: float = 0.0, cubic: float = 0.0,
                    name: str | None = None) -> Element:
     """Spring and damper about the axis of a revolute joint: ``M = k u + k3 u^3 + c u'``.
 
-    `rest` is the angle of `node` against `to` (the ground) without moment, zero at the start. Turns
-    are counted: in space from step to step, so in one step less than half a turn.
+    Turns are counted: in space from step to step, so in one step less than half a turn.
+
+    Parameters
+    ----------
+    node : Joint, Node or str
+        A revolute or cylindrical joint, which has both nodes and the axis; or the node that turns
+        against `to` (the ground).
+    stiffness, damping, cubic : float
+        k, c and k3 [force length, force length time].
+    axis : (3,), optional
+        With a node: by default that of the one hinge between the nodes, or of the node; z where
+        there is none.
+    rest : float
+        Angle of `node` against `to` without moment, zero at the start [rad].
+
+    Raises
+    ------
+    InputError
+        Numbers that are negative, a joint that does not turn about one axis, hinges about several
+        axes, an axis that the joint between the nodes forbids.
     """
     what = "torsion spring"
-    a, b = pair(model, node, to, what, ("rotation",))
+    a, b, vectors = about(model, node, axis, to, what)
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
     constants: dict[str, float | NDArray] = {"k": stiffness, "k3": cubic, "c": damping,
                                              "rest": rest}
-    if vectors := turning_axes(model, axis, what, a, signed=True):
+    if vectors:
         constants |= zip(("n", "m"), vectors[1:], strict=True)
-    return _add(model, name, what, a, rotations(a, b), constants)
+    spring = _add(model, name, what, a, rotations(a, b), constants)
+    check_axes(model, [spring])
+    return spring
 
 
 def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,

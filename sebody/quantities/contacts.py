@@ -10,6 +10,10 @@ from sebody.model.parts import Element
 from sebody.quantities.expressions import Number, positive
 from sebody.quantities.numbers import Numbers, Parts
 
+# force below which nothing presses: derivatives of powers and roots must exist at zero, so forces
+# of what is open are rounded up
+OPEN = 1e-100
+
 
 def pressing(of: Parts) -> dict[str, Element]:
     """Contacts, stops, gears and friction by name."""
@@ -25,7 +29,8 @@ def has(element: Element, quantity: str) -> bool:
 
 def normal_force(of: Numbers, name: str) -> Number:
     """Force along the normal, or moment of a stop of an angle."""
-    return _kept(of, name, "normal")
+    normal = _kept(of, name, "normal")
+    return normal * positive(normal - OPEN)
 
 
 def gap(of: Numbers, name: str) -> Number:
@@ -35,7 +40,7 @@ def gap(of: Numbers, name: str) -> Number:
 
 def sticks(of: Numbers, name: str) -> Number:
     """One where the friction sticks, zero where it slides or nothing presses."""
-    pressed = positive(_kept(of, name, "normal"))
+    pressed = positive(_kept(of, name, "normal") - OPEN)
     return pressed * positive(0.5 - _kept(of, name, "slid", "sticks"))
 
 

@@ -65,12 +65,15 @@ def in_joint_axes(of: Numbers, name: str, kind: str) -> object:
 
 
 def of_load(of: Numbers, name: str, kind: str) -> object:
-    """Force or moment of a load or spring on its node, the first if it has several."""
+    """Force or moment of a load or spring on its node, the first if it has several.
+
+    Of what acts in a joint that on `node` of the joint.
+    """
     load = loads(of)[name]
     if load.point is not None:          # minus that on the node of the surface; it has no moment
         node, factor = load.attachments[-1].node, -1.0 * (kind == "position")
     else:
-        node, factor = load.attachments[0].node, 1.0
+        node, factor = _first(of, load), 1.0
     return _flat(of, kind, scaled(factor, balance(of).on(load, node, kind)))
 
 
@@ -86,11 +89,34 @@ def effort(of: Numbers, name: str, what: str) -> Number:
         if kind == "rotation" and of.model.planar:
             return values[0]
         along = dot(values, [row[0] for row in balance(of).axes(drive)])
-        return -along if kind == "position" else along  # it pushes the other node along the axis
+        return _onwards(drive) * along if kind == "position" else along
     dof_block = getattr(*drive.place)
     first = of.numbering.dof_blocks[dof_block]
     return dot([of.total(first + k) for k in range(dof_block.start.size)],
                drive.direction.tolist())
+
+
+def _first(of: Parts, load: Element) -> Node:
+    """The node whose force and moment are those of a load: the first, in a joint its `node`.
+
+    Along a way the node with the axis comes first, which of a slider is the other one.
+    """
+    first, *others = (place.node for place in load.attachments)
+    if "slide" in load.kind and any(one.kind == "slider" and one.to is first
+                                    and one.node is others[0] for one in of.model.joints):
+        return others[0]
+    return first
+
+
+def _onwards(drive: Joint) -> float:
+    """Sign of the force along the axis, on the drive's node, that moves its way onwards.
+
+    Its equation gives the way of its second node along a direction. (Of results that older versions
+    have saved it is the way of the other node.)
+    """
+    one = drive.constraints[0]
+    sign = 1.0 if one.vector("e") @ drive.axis > 0.0 else -1.0
+    return sign if one.attachments[1].node is drive.node else -sign
 
 
 def multipliers(of: Numbers, name: str) -> list[Number]:

@@ -2,12 +2,11 @@
 
 from sebody.assembly.numbering import stretch
 from sebody.basics.errors import InputError
-from sebody.model.parts import DofBlock, Joint, Node
+from sebody.model.parts import SLIDES, TURNS, DofBlock, Joint, Node
 from sebody.quantities.algebra import back, dot, minus, spun, times
 from sebody.quantities.expressions import Number, angle
 from sebody.quantities.numbers import Numbers, Parts
 
-TURNS, SLIDES = ("revolute", "cylindrical"), ("prismatic", "slider", "cylindrical")
 
 
 def joints(of: Parts) -> dict[str, Joint]:
@@ -113,28 +112,21 @@ def turning(of: Numbers, name: str) -> Number:
 def displacement(of: Numbers, name: str) -> Number:
     """Displacement of a joint's node along its axis from the other one, from the start."""
     joint = _of_kind(of, name, SLIDES, "displacement", "slide")
-    other, carrier, sign = _ends(joint)
-    axis = times(of.rotation(carrier.rotation), joint.axis.tolist())
+    carrier, other, direction = joint.way
+    along = times(of.rotation(carrier.rotation), direction.tolist())
     gap = minus(*(of.part("q", node, "position") for node in (other, carrier)))
-    start = sign * float(joint.axis @ (other.point - carrier.point))
-    return sign * dot(axis, gap) - start
+    return dot(along, gap) - joint.way.start
 
 
 def speed(of: Numbers, name: str) -> Number:
     """Rate of this displacement."""
     joint = _of_kind(of, name, SLIDES, "speed", "slide")
-    other, carrier, sign = _ends(joint)
-    R, own = of.rotation(carrier.rotation), joint.axis.tolist()
+    carrier, other, direction = joint.way
+    R, own = of.rotation(carrier.rotation), direction.tolist()
     gap, gap_rate = (minus(*(of.part(part, node, "position") for node in (other, carrier)))
                      for part in "qv")
     turned_with = spun(of.part("v", carrier, "rotation"), own)
-    return sign * dot(times(R, own), gap_rate) + sign * dot(times(R, turned_with), gap)
-
-
-def _ends(joint: Joint) -> tuple[Node, Node, float]:
-    """The node that slides, the one with the axis, and the sign of the joint's node's motion."""
-    carrier = joint.own_axes.carrier
-    return (joint.to, carrier, -1.0) if carrier is joint.node else (joint.node, carrier, 1.0)
+    return dot(times(R, own), gap_rate) + dot(times(R, turned_with), gap)
 
 
 def _of_kind(of: Numbers, name: str, kinds: tuple[str, ...], what: str, does: str) -> Joint:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
+from sebody.model.parts import SLIDES, TURNS
 from sebody.quantities import contacts, forces, inside, motion
 from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
@@ -166,10 +167,10 @@ BODY = {
 JOINT = {
     "multipliers": Quantity(forces.multipliers, has=_has_equations, numbered=True),
     **_pair(forces.of_joint), **_pair(forces.in_joint_axes, prefix="local_"),
-    "angle": Quantity(motion.turned, has=partial(_is_a, motion.TURNS)),
-    "rate": Quantity(motion.turning, has=partial(_is_a, motion.TURNS)),
-    "displacement": Quantity(motion.displacement, "length", partial(_is_a, motion.SLIDES)),
-    "speed": Quantity(motion.speed, has=partial(_is_a, motion.SLIDES)),
+    "angle": Quantity(motion.turned, has=partial(_is_a, TURNS)),
+    "rate": Quantity(motion.turning, has=partial(_is_a, TURNS)),
+    "displacement": Quantity(motion.displacement, "length", partial(_is_a, SLIDES)),
+    "speed": Quantity(motion.speed, has=partial(_is_a, SLIDES)),
 }
 DRIVE = {
     "torque": Quantity(partial(_with, forces.effort, "torque"), "force length",

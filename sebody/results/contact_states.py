@@ -5,6 +5,8 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import Numbering
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element
+from sebody.quantities.contacts import OPEN
 
 
 def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str, str]:
@@ -15,13 +17,18 @@ def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str,
         if "normal" not in memory:
             continue
         own = dict(zip(memory, frames[numbering.memories[load]], strict=True))
-        if not own["normal"] > 0:
+        if not own["normal"] > OPEN and not without_play(load):
             states_by_name[load.name] = "open"
         elif load.constants.get("static", 0.0) == 0.0:
             states_by_name[load.name] = "presses"
         else:
             states_by_name[load.name] = "slides" if own["slid"] > 0.5 else "sticks"
     return states_by_name
+
+
+def without_play(load: Element) -> bool:
+    """Whether it presses on both sides of the same place, as teeth without backlash do."""
+    return load.kind.endswith("gear_play") and load.number("lower") == load.number("upper")
 
 
 def normal_forces(model: Mechanism) -> list[str]:

@@ -44,6 +44,13 @@ def _turn(kind: str) -> Callable[[Flattening, Element], Made]:
     return made
 
 
+def _journal(flat: Flattening, one: Element) -> Made:
+    """In the plane nothing presses along the normal."""
+    _sign(flat, one)
+    kept = {name: value for name, value in _scalars(one).items() if name not in ("across", "along")}
+    return "planar_friction_turn" + "_f2" * (one.number("across") > 0), kept
+
+
 def _universal(flat: Flattening, one: Element) -> Made:
     raise InputError(f"{one.name!r} is friction in a universal joint, which leaves the plane")
 
@@ -98,7 +105,7 @@ def _on_cylinder(flat: Flattening, one: Element) -> Made:
 
 LAWS: dict[str, Callable[[Flattening, Element], Made]] = {
     "friction_turn": _turn("planar_friction_turn"),
-    "friction_turn_f3m2": _turn("planar_friction_turn_f2"), "friction_turn_f3m1": _universal,
+    "friction_turn_f3m2": _journal, "friction_turn_f3m1": _universal,
     "friction_slide": _slide("planar_friction_slide"),
     "friction_slide_f2": _slide("planar_friction_slide_f1"),
     "friction_slide_f2m3": _slide("planar_friction_slide_f1m1"),

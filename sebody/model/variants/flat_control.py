@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody.basics.errors import InputError
-from sebody.model.actuators import SLIDES, TURNS
 from sebody.model.continuous import law_element
 from sebody.model.control_order import actuators, signals
 from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import SLIDES, TURNS
 from sebody.model.plane import AXIAL, POINTS, VECTORS, Plane
 from sebody.reduction.plane import PlanarBody
 

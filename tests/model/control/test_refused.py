@@ -66,7 +66,7 @@ def test_what_is_refused():
              "function of"),
             ({"law": 3}, "controller 'c' is 3: give a function of"),
             ({"states": [1.0]}, "is given 1 states, and its law has 4"),
-            ({"name": "angle"}, "controller 'angle' cannot be called 'angle': a sensor has that name"),
+            ({"name": "angle"}, "controller 'angle' cannot be called 'angle': a sensor has"),
             ({"name": "hub"}, "cannot be called 'hub': a node has that name"),
             ({"outputs": ["hub"]}, "a signal cannot be called 'hub': a node has that name"),
             ({"outputs": ["hinge"]}, "a signal cannot be called 'hinge': a joint has that")):
