@@ -1,6 +1,7 @@
 """Which controllers a model has, of which kind, and in which order a sample calls them."""
 
 from sebody.basics.errors import InputError
+from sebody.basics.spelling import alike
 from sebody.model.control_parts import Controller
 from sebody.model.mechanism import Mechanism
 
@@ -52,6 +53,27 @@ def signals(model: Mechanism) -> list[str]:
     """Outputs of controllers that are no actuators."""
     return list(dict.fromkeys(name for one in model.controllers.values() for name in one.outputs
                               if not is_actuator(model, name)))
+
+
+def misspelt(model: Mechanism) -> dict[str, str]:
+    """Signals that nothing reads and whose names are like those of inputs that nothing sets.
+
+    Such a name is a new signal, so that a misspelt one moves nothing. The message by the signal.
+    """
+    read = {name for one in model.controllers.values() for name in one.inputs}
+    read |= {one.quantity.removesuffix(".value") for one in model.sensors.values()}
+    written = {name for one in model.controllers.values() for name in one.outputs}
+    unset = [name for name in actuators(model) if name not in written]
+    remarks = {}
+    for one in model.controllers.values():
+        for name in one.outputs:
+            near = alike(name, unset)
+            if near and name not in read and not is_actuator(model, name):
+                remarks[name] = (
+                    f"controller {one.name!r} sets {name!r}, which no actuator is called and no "
+                    f"controller reads: did you mean {' or '.join(map(repr, near))}? If it is a "
+                    "signal to be recorded, give it a name that is less like an actuator's")
+    return remarks
 
 
 def actuators(model: Mechanism) -> dict[str, object]:

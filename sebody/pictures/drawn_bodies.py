@@ -13,7 +13,7 @@ from sebody.pictures.surface import box, spatial, surface_of
 from sebody.pictures.surface_parts import Surface
 from sebody.reduction.recovery import Recovery
 from sebody.results.motion import BodyMotion, body_motion
-from sebody.results.references import Undeformed, Welded, undeformed
+from sebody.results.references import Chord, Undeformed, Welded, undeformed
 from sebody.results.result import Result
 
 NEGLIGIBLE = 1e-5       # of the largest displacement by an amplitude: smaller ones are left out
@@ -43,7 +43,7 @@ class DrawnBody(NamedTuple):
     rotation: NDArray       # (frames, 4) quaternions, the real part last
     amplitudes: NDArray     # (frames, N)
     nodes: tuple[HeldNode, ...] = ()
-    reference: str | None = None        # node that displacements are measured from
+    reference: tuple[str, ...] = ()     # node that displacements are measured from, two of a chord
     still: Undeformed | None = None     # the undeformed body there, in every frame
     stress: NDArray | None = None       # (some frames at even distances, stations), von Mises
     stride: int = 1                     # frames from one of these to the next
@@ -96,7 +96,7 @@ def flexible(result: Result, body: Superelement, states: NDArray, size: float, w
     start = spatial(body.alpha @ [body.nodes[i].point for i in body.reduced.position_nodes])
     return DrawnBody(body.name, surface, start, spatial(motion.origin),
                      quaternions(motion.rotation), amplitudes[:, seen], _held(body, start, seen),
-                     node and node.name, still, labels=_labels(recovery, surface))
+                     _names(node), still, labels=_labels(recovery, surface))
 
 
 def quaternions(rotations: NDArray) -> NDArray:
@@ -177,15 +177,23 @@ def _labels(recovery: Recovery, surface: Surface) -> NDArray:
     return np.where(np.isin(surface.shares, (0, 1)), names[own], 0)
 
 
-def _still(result: Result, body: Superelement, motion: BodyMotion, node: Node, states: NDArray
-           ) -> Undeformed:
-    """The undeformed body at a node in space, in a plane too."""
-    drawn = undeformed(result, body, motion.rotation, motion.origin, node, states)
+def _still(result: Result, body: Superelement, motion: BodyMotion, at: Node | Chord,
+           states: NDArray) -> Undeformed:
+    """The undeformed body at a node or on a chord in space, in a plane too."""
+    drawn = undeformed(result, body, motion.rotation, motion.origin, at, states)
     if not result.model.planar:
         return drawn
     rotation = np.tile(np.eye(3), (len(states), 1, 1))
     rotation[:, :2, :2] = drawn.rotation
     return Undeformed(rotation, spatial(drawn.shift))
+
+
+def _names(reference: Node | Chord | None) -> tuple[str, ...]:
+    """Names of the nodes of a reference."""
+    if reference is None:
+        return ()
+    nodes = reference if isinstance(reference, Chord) else (reference,)
+    return tuple(node.name for node in nodes)
 
 
 def _along(model: Mechanism, node: Node, centre: NDArray) -> NDArray:

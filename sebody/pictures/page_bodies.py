@@ -63,9 +63,14 @@ def _body(blocks: Blocks, body: DrawnBody, measure: Measure, stress: float,
         "held": [{"node": number[node.name], "point": (node.point / size).tolist(),
                   "position": node.position, "rotation": node.rotation, "full": node.full}
                  for node in body.nodes],
-        "reference": None if body.reference is None else number[body.reference],
+        "reference": _reference([number[name] for name in body.reference]),
         "stress": None if body.stress is None else blocks.values(body.stress / stress, bits=COLOUR),
         "stride": body.stride}
+
+
+def _reference(nodes: list[int]) -> int | list[int] | None:
+    """The node that displacements are measured from, or the two of a chord."""
+    return nodes if len(nodes) > 1 else nodes[0] if nodes else None
 
 
 def nodes(blocks: Blocks, result: Result, drawn: Scenery, measure: Measure) -> list[dict]:

@@ -54,7 +54,8 @@ class Field(FieldStates):
 
         The undeformed body moves with the `reference`: a node of this body or of one that is
         welded to it, by its name, or ``"frame"``, the floating frame. By default it is the first
-        node that is fixed, else the first one with a joint, else the floating frame.
+        node that is fixed with its rotation, else the chord between two whose positions are
+        supported, else the first one that is fixed, or has a joint, else the floating frame.
 
         Raises
         ------

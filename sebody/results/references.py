@@ -1,12 +1,15 @@
 """Where displacements are measured from: the undeformed body that moves with a chosen node.
 
 A body that is held at a node is compared with the undeformed body that has the position and the
-rotation of this node, so the support does not move. Bodies that are welded together, such as the
+rotation of this node, so the support does not move. On two supports that let it turn it is compared
+with the undeformed body on the chord between them, which turns about the chord with the first one:
+neither support moves across the chord. Bodies that are welded together, such as the
 parts of a beam, are measured from one node, so displacements are continuous from part to part. A
 body without support or joint is compared with the undeformed body on its floating frame.
 """
 
 from collections.abc import Hashable, Iterator
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +22,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.results.recording import Recording
 
+NO_SUPPORT = "drive", "distance"        # joints that hold a position along one way alone
 FRAME = "frame"         # in place of the name of a node: the floating frame of the body
 
 
@@ -36,30 +40,55 @@ class Undeformed(NamedTuple):
         return points @ self.rotation.transpose(0, 2, 1) + self.shift[:, None]
 
 
+class Chord(NamedTuple):
+    """From the first to the second of two nodes whose positions are supported."""
+
+    node: Node
+    other: Node
+
+
 def undeformed(recording: Recording, body: Superelement, rotation: NDArray, origin: NDArray,
-               node: Node, states: slice | NDArray) -> Undeformed:
-    """The undeformed body at a node, seen from a frame.
+               at: Node | Chord, states: slice | NDArray) -> Undeformed:
+    """The undeformed body at a node, or on a chord, seen from a frame.
 
     Parameters
     ----------
     rotation, origin : (n, D, D), (n, D)
         Of the floating frame, see `BodyMotion`.
-    node : Node
+    at : Node or Chord
         See `Welded.reference`.
     states : slice or (n,) of int
         Recorded states in which they are.
     """
-    known = recording.numbering.dof_blocks
+    node = at.node if isinstance(at, Chord) else at
     held = np.array([body.nodes[i].point for i in body.reduced.position_nodes])
     arm = body.alpha @ held - node.point        # from the node to the frame, both undeformed
-    position = dof_block(node, "position")
-    first = known[position]
-    place = recording.recorded("q")[states, first:first + position.start.size]
+    place = _places(recording, node, states)
     turned = (_rotations(recording, node, states)
               if node not in body.nodes or node in _full(body) else rotation)
+    if isinstance(at, Chord):
+        chord = _places(recording, at.other, states) - place
+        turned = _least_rotations(turned @ (at.other.point - node.point), chord) @ turned
     back = rotation.transpose(0, 2, 1)
     shift = place + turned @ arm - origin
     return Undeformed(back @ turned, (back @ shift[:, :, None])[:, :, 0])
+
+
+def _places(recording: Recording, node: Node, states: slice | NDArray) -> NDArray:
+    """Positions (n, D) of a node."""
+    position = dof_block(node, "position")
+    first = recording.numbering.dof_blocks[position]
+    return recording.recorded("q")[states, first:first + position.start.size]
+
+
+def _least_rotations(vectors: NDArray, others: NDArray) -> NDArray:
+    """Rotations (n, D, D) by the least angles that turn vectors (n, D) to the directions of others.
+    """
+    a, b = (v / np.linalg.norm(v, axis=1)[:, None] for v in (vectors, others))
+    # (1 + a.b) I of a and b in their plane, and their bivector; of any dimension
+    across = np.einsum("ni,nj->nij", b, a) - np.einsum("ni,nj->nij", a, b)
+    cosine = np.einsum("ni,ni->n", a, b)[:, None, None]
+    return np.eye(a.shape[1]) + across + across @ across / (1.0 + cosine)
 
 
 class Set(NamedTuple):
@@ -101,12 +130,16 @@ class Welded:
         for body in model.bodies.values():
             for node in _full(body):
                 self._bodies.join(body.name, self._cluster(node))
-        self._fixed = {self._cluster(node) for node in model.nodes.values()
-                       if node.position is not None and node.position.fixed}
+        nodes = [*model.nodes.values(), *model.grounds]
+        self._clamped = {self._cluster(node) for node in nodes
+                         if _is_fixed(node.position) and _is_fixed(node.rotation)}
+        self._fixed = {self._cluster(node) for node in nodes if _is_fixed(node.position)}
         self._jointed = self._with_joints()
 
-    def reference(self, body: Superelement, name: str | None = None) -> Node | None:
-        """The node that displacements of a body are measured from; None for its floating frame.
+    def reference(self, body: Superelement, name: str | None = None) -> Node | Chord | None:
+        """The node, or chord, that displacements of a body are measured from.
+
+        None for its floating frame.
 
         Parameters
         ----------
@@ -129,13 +162,22 @@ class Welded:
                          f"give one of its nodes, {', '.join(known)}, or {FRAME!r}, its floating "
                          "frame")
 
-    def default(self, body: Superelement) -> Node | None:
-        """The first node that is fixed, else the first one with a joint.
+    def default(self, body: Superelement) -> Node | Chord | None:
+        """The first node that is fixed with its rotation, else the chord of two supported ones.
 
-        None if there is none; of several bodies that are welded together their first node.
+        The chord leads from the first of them to the farthest. Else the first node that is fixed,
+        else the first one with a joint. None if there is none; of several bodies that are welded
+        together their first node.
         """
         nodes = list(self.candidates(body))
-        for held in (self._fixed, self._jointed):
+        supported = [] if any(self._cluster(node) in self._clamped for node in nodes) else [
+            node for node in nodes if node.position in self._supported]
+        if supported:
+            first = supported[0]
+            other = max(supported, key=lambda node: float(np.linalg.norm(node.point - first.point)))
+            if np.any(other.point != first.point):
+                return Chord(first, other)
+        for held in (self._clamped, self._fixed, self._jointed):
             for node in nodes:
                 if self._cluster(node) in held:
                     return node
@@ -178,6 +220,18 @@ class Welded:
                 sharing.setdefault(node.position, set()).add(self._cluster(node))
         return clusters.union(*(group for group in sharing.values() if len(group) > 1))
 
+    @cached_property
+    def _supported(self) -> set[DofBlock | None]:
+        """Positions that are fixed, or held by a joint to what is fixed."""
+        positions = {node.position for node in self._model.nodes.values()
+                     if _is_fixed(node.position)}
+        for joint in self._model.joints:
+            if joint.kind not in NO_SUPPORT:
+                for one, other in ((joint.node, joint.to), (joint.to, joint.node)):
+                    if _is_fixed(other.position):
+                        positions.add(one.position)
+        return positions
+
     def _cluster(self, node: Node) -> Hashable:
         """Representative of all nodes that move as one with a node."""
         return self._nodes.root(_key(node))
@@ -207,6 +261,10 @@ def _key(node: Node) -> tuple[Hashable, Hashable]:
             rotation is node.rotation for rotation, _ in position.arms):
         position = position.root
     return node.rotation, position if node.rotation is not None else node
+
+
+def _is_fixed(block: DofBlock | None) -> bool:
+    return block is not None and block.fixed
 
 
 def _full(body: Superelement) -> list[Node]:

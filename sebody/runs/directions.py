@@ -34,9 +34,21 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
         return [pair(numbering, state, turns, axis, [Ra.T @ Rb @ axis, axis])
                 for axis in np.eye(3)]
     if kind == "gear_play":
-        return [_turn(numbering, state, turns[:2],
-                      np.cross(c["n1"], c["m1"]) if "n1" in c else None)]
+        return [_of_gear(element, numbering, state, 1)]
     return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+
+
+def of_mesh(gear: Element, numbering: Numbering, state: State) -> NDArray:
+    """The row of the teeth of a gear: of the angle of the first less the ratio times the second."""
+    first, second = (_of_gear(gear, numbering, state, k) for k in (1, 2))
+    return first - gear.number("ratio") * second
+
+
+def _of_gear(gear: Element, numbering: Numbering, state: State, k: int) -> NDArray:
+    """The row of the angle of one of the two joints of a gear."""
+    c = gear.constants
+    return _turn(numbering, state, list(gear.dof_blocks[2 * k - 2:2 * k]),
+                 np.cross(c[f"n{k}"], c[f"m{k}"]) if f"n{k}" in c else None)
 
 
 def of_point(element: Element, numbering: Numbering, state: State, axis: NDArray) -> NDArray:

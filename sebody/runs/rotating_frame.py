@@ -96,6 +96,14 @@ class Spin:
         return tuple(one.matrix(total, total) for one in (velocity, place, rate))
 
 
+def fastest_spin(run: Simulation | Result) -> tuple[NDArray, float]:
+    """The largest angular velocity of a node, (3,) in global axes or (1,), and its size."""
+    spins = [_rotation(run, dof_block) @ run.state.v[at] if not run.model.planar else
+             run.state.v[at] for dof_block, at in _dof_blocks(run) if dof_block.rotational]
+    fastest = max(spins, key=np.linalg.norm, default=np.zeros(1))
+    return fastest, float(np.linalg.norm(fastest))
+
+
 def motion(run: Simulation | Result) -> csc_matrix:
     """Motion of all coordinates, in global axes, by that of the unknowns, in the axes of these.
 

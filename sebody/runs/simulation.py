@@ -17,6 +17,7 @@ from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
 from sebody.engine.system import System
+from sebody.model.control_order import misspelt
 from sebody.model.model import Model
 from sebody.model.summary import summary
 from sebody.results.recording import Start
@@ -117,6 +118,8 @@ class Simulation:
         self.rows = RecordedRows(self.state, self.every)
         self.watch = Watch()
         self.watch.start(model.bodies, self.scheme, bool(self.numbering.multipliers))
+        for name, message in misspelt(model).items():
+            self.watch.say(f"signal {name}", message)
         if threads > 1 and not self.system.shared.mail.size:
             self.watch.say("threads", TOO_SMALL.format(threads, self.numbering.free))
         self.seconds = 0.0
@@ -125,6 +128,7 @@ class Simulation:
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
         user_faults.forget(model)
         self.begun, self.tolerance = start, tolerance
+        self._unjudged = any("teeth" in load.tuned for load in model.loads)
         self._begin()
         self.rows.begin()
 
@@ -148,6 +152,14 @@ class Simulation:
         self.sampling.check(self.h, self.tolerance is None)
         if self.sampling.begin():
             self._accelerate()
+
+    def _judge_teeth(self) -> None:
+        """Say once what teeth do to vibrations whose stiffness was not given."""
+        if self._unjudged:
+            from sebody.runs.teeth import teeth_remarks     # here: it needs a simulation
+            for key, message in teeth_remarks(self).items():
+                self.watch.say(key, message)
+        self._unjudged = False
 
     def __repr__(self) -> str:
         return (f"<Simulation of a {summary(self.model)}: {self.numbering.free} unknowns, step "
@@ -185,10 +197,11 @@ class Simulation:
         Interrupted
             Ctrl-C, or a `KeyboardInterrupt` of `progress`; what was computed is kept likewise.
         """
-        if progress is None and self._piece(t_end):
+        if not self._unjudged and progress is None and self._piece(t_end):
             return self
         self.flush()
         user_faults.refuse_changed(self.model)
+        self._judge_teeth()
         last = last_step(t_end, self.h, self.time, int(self.state.control.grid))
         if abs(t_end / self.h - last) > OFF_GRID:
             self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "

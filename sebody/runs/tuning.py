@@ -53,7 +53,7 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
         return
     solve = least(masses, system)
     for load in tuned:
-        constants = _Constants(load, system, numbering)
+        constants = ElementConstants(load, system, numbering)
         rows = directions(load, numbering, state)
         mass = 1.0 / _mobility(rows, solve, system, state, numbering.free)
         natural = mass / state.clock.natural**2
@@ -102,7 +102,7 @@ def response(row: NDArray, solve: Callable[[NDArray], NDArray], system: System, 
     return accelerations
 
 
-class _Constants:
+class ElementConstants:
     """The constants of an element in a system, by name."""
 
     def __init__(self, element: Element, system: System, numbering: Numbering) -> None:
@@ -131,7 +131,7 @@ def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
 class _Held(NamedTuple):
     """Friction at rest."""
 
-    constants: _Constants
+    constants: ElementConstants
     rows: list[NDArray]
     axes: NDArray           # columns: what each row is among the bristles
     lever: float            # of the normal force
@@ -158,7 +158,7 @@ class LoadedBristles:
 
     def _held(self, load: Element) -> list[_Held]:
         """The friction, if nothing slides in it: its bristles are straight then."""
-        constants = _Constants(load, self.system, self.numbering)
+        constants = ElementConstants(load, self.system, self.numbering)
         memory, names = self.numbering.memories[load], element_kernel(load.kind).MEMORY
         bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
         if not bent or constants["speed"] > 0:
@@ -176,7 +176,8 @@ class LoadedBristles:
         self.state.frames_old[bent] = self.state.frames_old[memory[names.index("slid")]] = 0.0
         return [_Held(constants, rows, axes, lever, bent, memory[names.index("normal")])]
 
-    def _touching(self, load: Element, constants: _Constants) -> tuple[list[NDArray], NDArray]:
+    def _touching(self, load: Element, constants: ElementConstants
+                  ) -> tuple[list[NDArray], NDArray]:
         """Directions of the slip of a contact that is closed, and these in the surface's axes."""
         size = len(load.dof_blocks[0].start)
         first = self.numbering.forces_at[load]

@@ -10,6 +10,7 @@ from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.coordinate_names import coordinate_names
 from sebody.small_motion.inputs_of_motion import Input
+from sebody.small_motion.pressed_friction import without_multipliers
 
 DEPENDENT = 1e-9    # pivot, of the largest, of constraints that others contain
 MASSLESS = 1e-13    # likewise, of the masses
@@ -35,6 +36,8 @@ class ConstrainedMotion:
         self._scale = 1.0 / np.sqrt(np.maximum(np.diag(self._matrices[0]),
                                                1e-12 * np.diag(self._matrices[0]).max()))
         self._eliminate(K[np.ix_(self._multipliers, moving)])
+        self._tests = without_multipliers(self._N, K[np.ix_(self._multipliers, moving)],
+                                          self._constraint_columns)
         driven = [bool(one.moves) for one in inputs]
         self._driven = np.flatnonzero(driven)
         self._free_names = [coordinate_names(run)[moving[k]] for k in self._independent]
@@ -71,8 +74,9 @@ class ConstrainedMotion:
 
     def matrices(self) -> tuple[NDArray, NDArray]:
         """A and B."""
-        N, r, m, d = self._N, self._N.shape[1], len(self._inputs), len(self._driven)
-        M, C, K = (N.T @ X @ N for X in self._matrices)
+        N, L, r = self._N, self._tests, self._N.shape[1]
+        m, d = len(self._inputs), len(self._driven)
+        M, C, K = (L.T @ X @ N for X in self._matrices)
         size = 1.0 / np.sqrt(np.maximum(np.abs(np.diag(M)), 1e-300))
         factors = lu_factor(size[:, None] * M * size)
         pivots = np.abs(np.diag(factors[0]))
@@ -82,7 +86,7 @@ class ConstrainedMotion:
 
         def accelerated(X: NDArray) -> NDArray:
             return size[:, None] * lu_solve(factors, size[:, None] * X)
-        by_value, by_rate, by_second = (accelerated(N.T @ X) for X in self._independent_pushes())
+        by_value, by_rate, by_second = (accelerated(L.T @ X) for X in self._independent_pushes())
         A, B = np.zeros((2 * r + 2 * d, 2 * r + 2 * d)), np.zeros((2 * r + 2 * d, m))
         A[:r, r:2 * r] = np.eye(r)
         A[r:2 * r, :r], A[r:2 * r, r:2 * r] = -accelerated(K), -accelerated(C)

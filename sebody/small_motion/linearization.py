@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
@@ -12,19 +13,23 @@ from scipy.linalg import LinAlgError, null_space
 
 from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
-from sebody.basics.errors import InputError
+from sebody.basics.errors import InputError, LimitWarning
 from sebody.basics.massless import condensed
 from sebody.basics.tabular import brief, counted
 from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.limits.watch import Watch
-from sebody.runs.rotating_frame import Spin
+from sebody.runs.rotating_frame import Spin, fastest_spin
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative, turning
+from sebody.runs.teeth import teeth_remarks
 from sebody.small_motion import mode_tables
 from sebody.small_motion.eigenvalues import NEGLIGIBLE, eigenvalues, undamped
+from sebody.small_motion.pressed_friction import without_multipliers
 from sebody.small_motion.shapes import Shapes
+
+SPINS = 1e-3        # of the lowest eigenvalue: a slower rotation changes nothing that one sees
 
 
 def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:
@@ -44,6 +49,8 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
     matrices = (turning(run, spin) if spin.rotates else
                 tuple(derivative(run, *weights) for weights in np.eye(3)))
     M, C, K = (A.toarray() for A in matrices)
+    for key, message in teeth_remarks(run, M, K).items():
+        watch.say(key, message)
     if not all(np.isfinite(A).all() for A in (K, C, M)):
         did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
         raise InputError(f"the state cannot be evaluated: {did}")
@@ -53,7 +60,9 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
 class Linearization(NamedTuple):
     """``mass xi'' + damping xi' + stiffness xi = 0`` for motion ``free @ xi`` of the unknowns.
 
-    The columns of `free` are an orthonormal basis of what the constraints allow. `contacts` says of
+    The columns of `free` are an orthonormal basis of what the constraints allow. Forces of
+    constraints do no work on these motions, but where friction slides they change it: these changes
+    are in the matrices, which are not symmetric then. `contacts` says of
     every contact, stop and friction of the model what the matrices took it for: ``sticks``,
     ``slides``, ``presses`` or ``open``.
     """
@@ -87,11 +96,19 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)
-    basis = null_space(K[np.ix_(multipliers, moving)]) if multipliers.size else np.eye(len(moving))
-    free = np.zeros((n, basis.shape[1]))
-    free[moving] = basis
+    G, columns = K[np.ix_(multipliers, moving)], K[np.ix_(moving, multipliers)]
+    basis = null_space(G) if multipliers.size else np.eye(len(moving))
+    free, tests = np.zeros((n, basis.shape[1])), np.zeros((n, basis.shape[1]))
+    free[moving], tests[moving] = basis, without_multipliers(basis, G, columns)
     contacts = states(run.model, run.numbering, run.state.frames)
-    return Linearization(*(free.T @ A @ free for A in (M, C, K)), free, contacts)
+    if np.array_equal(free, tests):
+        return Linearization(*(free.T @ A @ free for A in (M, C, K)), free, contacts)
+    mass, pushed = (side.T @ M @ free for side in (free, tests))
+    try:
+        own = np.linalg.solve(pushed.T, mass.T).T       # so that the mass stays symmetric
+    except np.linalg.LinAlgError:                       # there are motions without mass
+        return Linearization(pushed, *(tests.T @ A @ free for A in (C, K)), free, contacts)
+    return Linearization(mass, *(own @ tests.T @ A @ free for A in (C, K)), free, contacts)
 
 
 class Vibrations(NamedTuple):
@@ -175,6 +192,20 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
                       Shapes(run), following)
 
 
+def warn_of_spin(run: Simulation | Result, rates: NDArray, what: str) -> None:
+    """Warn that matrices of the instant are not those of what spins, beside these rates."""
+    fastest, spinning = fastest_spin(run)
+    lowest = rates[rates > 0.0].min(initial=np.inf)
+    if spinning > SPINS * (lowest if np.isfinite(lowest) else 0.0):
+        axes = (f"{fastest[0]:.6g}" if len(fastest) == 1 else
+                f"({', '.join(f'{part + 0.0:.6g}' for part in fastest)})")
+        warnings.warn(
+            f"{what} of a state that rotates at up to {spinning:.6g} rad a unit of time, without "
+            "spin=: the matrices are those of the instant, and nothing moves with their "
+            f"eigenvalues for long. Give spin={axes}, the angular velocity of axes in which the "
+            "rotation is steady, or a state at rest", LimitWarning, stacklevel=3)
+
+
 class Modes(NamedTuple):
     """Small damped or gyroscopic motion ``shape exp(value t)``, one of each conjugate pair."""
 
@@ -220,9 +251,13 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
 
     Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
     positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
+
+    Of what spins without `spin=` the matrices are those of the instant: a warning says so.
     """
     M, C, K, free = linearize(run, spin)[:4]
     roots = eigenvalues(M, C, K)
+    if spin is None:
+        warn_of_spin(run, np.abs(roots.values), "modes")
     # on integrals of controllers' states nothing depends: each has the value 0, which is no mode;
     # rounding may make a conjugate pair of two of these, of which one value is here
     nearest = np.argsort(np.abs(roots.values), kind="stable")

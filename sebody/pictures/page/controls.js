@@ -56,7 +56,8 @@ class Controls {
     const nodes = [...new Set(scene.bodies.filter((body) => !body.rigid).flatMap(
       (body) => body.held.map((held) => held.node)))];
     const given = [...new Set(scene.bodies.map((body) => body.reference).filter(
-      (node) => node !== null))].map((node) => header.nodes[node].name);
+      (node) => node !== null).map(
+      (at) => [].concat(at).map((node) => header.nodes[node].name).join(" - ")))];
     const rest = given.length ? `support: ${given.slice(0, 2).join(", ")}`
       + (given.length > 2 ? ", ..." : "") : "floating frame";
     const known = [["default", rest], ...(given.length ? [["frame", "floating frame"]] : []),

@@ -1,4 +1,5 @@
-// Where displacements are measured from: the undeformed body that moves with a chosen node.
+// Where displacements are measured from: the undeformed body that moves with a chosen node, or with
+// the chord between two of them, which is a pair.
 //
 // Bodies that are welded together share a reference: seen from a body that does not have the node,
 // it is carried from body to body by the nodes that they have in common.
@@ -24,6 +25,10 @@ class References {
 
   // How the motion of a node comes to a body: the body that has it, and shared nodes on the way.
   way(start, node) {
+    if (Array.isArray(node)) {
+      const [way, other] = node.map((one) => this.way(start, one));
+      return way && other ? { ...way, other } : null;
+    }
     const from = new Map([[start, null]]), queue = [start];
     for (const k of queue) {
       const own = this.bodies[k].held.find((held) => held.node === node);
@@ -51,6 +56,24 @@ class References {
   still(k, amplitudes) {
     const way = this.ways[k];
     if (!way) return null;
+    const found = this.carried(way, amplitudes);
+    return way.other ? this.onChord(k, way, found, this.carried(way.other, amplitudes)) : found;
+  }
+
+  // The same on the chord from the node of one way to that of another, from those at both nodes.
+  onChord(k, way, at, other) {
+    const [first, second] = [way, way.other].map(({ owner, own }) => subtract(
+      add(this.bodies[owner].start, own.point), this.bodies[k].start));
+    const place = add(combine(at.E, first), at.shift);
+    const chord = subtract(add(combine(other.E, second), other.shift), place);
+    const a = unit(combine(at.E, subtract(second, first))), b = unit(chord), axis = cross(a, b);
+    const turn = rotation(times(Math.atan2(length(axis), dot(a, b)), unit(axis)));
+    const E = matrixTimes(turn, at.E);
+    return { E, shift: subtract(place, combine(E, first)) };
+  }
+
+  // The undeformed body at the node of a way, in the axes of the body that the way leads to.
+  carried(way, amplitudes) {
     const owner = this.bodies[way.owner], { place, E } = owner.at(way.own, amplitudes[way.owner]);
     let found = { E, shift: subtract(place, combine(E, way.own.point)) };
     for (const { body, other, here, there } of way.steps) {
