@@ -156,7 +156,7 @@ class Simulation:
     def _judge_teeth(self) -> None:
         """Say once what teeth do to vibrations whose stiffness was not given."""
         if self._unjudged:
-            from sebody.runs.teeth import teeth_remarks     # here: it needs a simulation
+            from sebody.runs.teeth import teeth_remarks  # here: it needs a simulation
             for key, message in teeth_remarks(self).items():
                 self.watch.say(key, message)
         self._unjudged = False

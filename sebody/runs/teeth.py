@@ -14,13 +14,14 @@ from scipy.linalg import LinAlgError, eigh, null_space
 from sebody.engine.evaluate import to_body_axes
 from sebody.kernels.loader import element_kernel
 from sebody.model.parts import Element
-from sebody.results.contact_quantities import OPEN, without_play
+from sebody.results.contact_quantities import without_play
 from sebody.results.result import Result
 from sebody.runs.directions import of_mesh
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative
 from sebody.runs.tuning import ElementConstants
 
+ROUNDED = 1e-12         # depth of teeth that is rounding of angles [rad]
 MOST = 400              # unknowns: eigenvalues of more take seconds
 SOFT = 0.01             # share of a frequency by which teeth lower it without a word
 LOWEST = 3              # vibrations that are looked at
@@ -53,7 +54,7 @@ def _loose(run: Simulation | Result, gear: Element) -> str:
     """What is said of teeth that carry no load and have no stiffness without."""
     memory = dict(zip(element_kernel(gear.kind).MEMORY,
                       run.state.frames[run.numbering.memories[gear]], strict=True))
-    if gear.number("exponent") == 1.0 or not without_play(gear) or memory["normal"] > OPEN:
+    if gear.number("exponent") == 1.0 or not without_play(gear) or memory["depth"] > ROUNDED:
         return ""
     return (f"the teeth of {gear.name!r} carry no load, and with exponent "
             f"{gear.number('exponent'):g} they have no stiffness without one: small motion is that "

@@ -1,4 +1,4 @@
-"""Springs and drives about the axis of a hinge: by its name, by default, and about no other axis."""
+"""Springs and drives about the axis of a hinge: by its name, by default, about no other axis."""
 
 import numpy as np
 import pytest

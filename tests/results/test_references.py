@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
+from sebody.analysis import equilibrium
 from sebody.fem import circle, frame, planar_beam, rectangle, straight_beam
 from sebody.reduction import craig_bampton
 from sebody.results.references import Welded
@@ -123,6 +124,63 @@ def test_which_node_is_taken():
     assert names(model)["free"] == "f"          # the joint is at the end of a rigid link
     model.node("g", (5, 0, 0), at="e")
     assert names(model)["free"] == "e"          # e shares its position with g: a ball joint
+
+
+def on_two_supports(planar, bodies=1, elements=8, ends=(0, 1)):
+    """A beam in general position whose ends are held, and turn, under a uniform load across it."""
+    D = 2 if planar else 3
+    along, across = ((np.array([0.6, 0.8]), np.array([-0.8, 0.6])) if planar else
+                     (TURN[:, 0], TURN[:, 1]))
+    model = Model(planar=planar)
+    nodes = [model.node(name, START[:D] + x * along) for name, x in (("a", 0.0), ("b", 2.0))]
+    model.beam("beam", nodes, rectangle(0.02, 0.03, *STEEL), elements, bodies, 4)
+    model.gravity(-200.0 * across)
+    first, last = (nodes[k] for k in ends)
+    model.fix(first, "position")
+    if planar:
+        model.slider(last, axis=along)
+    else:
+        model.slider(last, axis=along)
+        model.torsion_spring(first, 1e3, axis=along)      # else it turns about its axis
+    return model, along, across
+
+
+@pytest.mark.parametrize("planar, bodies", [(True, 1), (False, 1), (True, 2)])
+def test_a_beam_on_two_supports_is_measured_from_their_chord(planar, bodies):
+    """At both supports nothing across; the middle by its place, in a plane by 5 q L^4/(384 E I)."""
+    model, along, across = on_two_supports(planar, bodies)
+    still = equilibrium(model, 1)
+    fields = [still.field(name) for name in model.bodies]
+    seen = [field.displacement(-1) @ across for field in fields]
+    assert abs(seen[0][0]) < 1e-12 and abs(seen[-1][-1]) < 1e-12
+    middle = -1 if bodies == 2 else 4
+    moved = (fields[0].position(-1)[middle] - (START[:len(along)] + along)) @ across
+    assert seen[0][middle] == pytest.approx(moved, rel=1e-9)     # the chord stays where it is
+    assert np.concatenate(seen).min() == seen[0][middle]
+    if planar:      # a sag of 0.023 L is beyond a linear beam by its square
+        linear = 5 * (7800.0 * 0.02 * 0.03 * 200.0) * 2.0**4 / 384 / (2.1e11 * 0.03 * 0.02**3 / 12)
+        assert -moved == pytest.approx(linear, rel=5e-3)
+
+
+def test_either_support_may_be_the_fixed_one():
+    model, along, across = on_two_supports(True)
+    still = equilibrium(model, 1)
+    turned, *_ = on_two_supports(True, ends=(1, 0))     # held at the other end
+    other = equilibrium(turned, 1)
+    one, two = (r.field("beam").displacement(-1) @ across for r in (still, other))
+    assert one == pytest.approx(two, abs=1e-9 * np.abs(one).max() + 1e-12)
+
+
+def test_a_clamped_node_comes_before_supports():
+    """In whatever order; a chord needs two places."""
+    model = arms()
+    model.fix("e", "position")
+    assert names(model)["free"] == "e"
+    model.slider("f", axis=(1, 0, 0))
+    found = Welded(model).reference(model.bodies["free"])
+    assert (found.node.name, found.other.name) == ("e", "f")
+    model.fix("f")
+    assert names(model)["free"] == "f"
 
 
 def test_bodies_that_are_welded_are_measured_from_one_node():

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from sebody import Model
+from sebody import Model, Simulation
 from sebody.analysis import campbell, equilibrium, modes
+from sebody.basics.errors import LimitWarning
 from sebody.fem import circle
 from sebody.small_motion.eigenvalues import EPS, eigenvalues
 
@@ -103,3 +104,32 @@ def test_motions_without_mass_have_no_frequency():
     M, C, K = np.diag([2.0, 0.0]), np.zeros((2, 2)), np.array([[3.0, -1.0], [-1.0, 1.0]])
     found = eigenvalues(M, C, K)
     assert found.values == pytest.approx([1j], abs=1e-12)
+
+
+def disc(planar=False, spin=50.0):
+    """A disc on a bushing that spins about AXIS, or in a plane."""
+    model = Model(planar=planar)
+    origin = (0.0, 0.0) if planar else (0.0, 0.0, 0.0)
+    model.node("o", origin)
+    model.fix("o")
+    model.node("d", origin)
+    inertia = 2e-3 if planar else 1e-3 * (np.eye(3) + np.outer(AXIS, AXIS))
+    model.rigid_body("disc", "d", 1.0, inertia)
+    turning = 0.0 if planar else (1e1, 1e1, 1e1)
+    model.bushing("o", to="d", stiffness=1e4, turning_stiffness=turning)
+    model.initial_velocity("d", angular=spin if planar else spin * AXIS)
+    return model
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_modes_of_what_spins_want_the_spin(planar, recwarn):
+    """The warning names it; nothing is said with it, at rest, or of a rotation that is slow."""
+    suggested = "50" if planar else r"\(21.8218, 43.6436, 10.9109\)"
+    with pytest.warns(LimitWarning, match="modes of a state that rotates at up to 50 rad a unit of "
+                      f"time, without spin=: .* Give spin={suggested}, the angular velocity of"):
+        modes(Simulation(disc(planar), 1e-3))
+    recwarn.clear()
+    modes(Simulation(disc(planar), 1e-3), 50.0 if planar else 50.0 * AXIS)
+    modes(Simulation(disc(planar, 0.0), 1e-3))
+    modes(Simulation(disc(planar, 1e-4), 1e-3))
+    assert not [one for one in recwarn if "spin=" in str(one.message)]

@@ -156,7 +156,8 @@ class _Flat(NamedTuple):
                     if load.mode is None and load.body is None and load.law is None
                     and load.point is None}
         for load in model.loads:
-            if load.pressed_by is not None and "_f" in on_nodes[load][0].kind:
+            # a kernel that reads multipliers has their numbers in its name
+            if load.pressed_by is not None and on_nodes[load][0].kind[-1].isdecimal():
                 on_nodes[load][0].pressed_by = joints[load.pressed_by]
         bodies = flat_bodies(model, flat.plane.axes)
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}

@@ -5,6 +5,7 @@ import pytest
 from controlled_rotor import PERIOD, controlled, rotor
 
 from sebody import InputError, Simulation, SimulationError
+from sebody.basics.errors import LimitWarning
 from sebody.control import pid, state_feedback
 
 
@@ -38,6 +39,25 @@ def test_faults_of_a_run(tmp_path):
     with pytest.raises(InputError, match="the run cannot begin: controller 'wide' raised "
                        "IndexError: index 3 is out of bounds for axis 0 with size 1"):
         Simulation(model, 0.01)
+
+
+def test_a_misspelt_output_is_named():
+    """A name that no actuator has is a signal: one like that of an idle actuator is warned of."""
+    def said(sets, **reader):
+        model = rotor()
+        model.actuator("brake", joint="hinge")
+        model.controller("c", state_feedback([[1.0]] * len(sets)), ["hub.rotation"], sets,
+                         PERIOD)
+        if reader:
+            model.controller("d", state_feedback([[1.0]]), **reader, period=PERIOD)
+        return [one for one in Simulation(model, 0.01).result().warnings if "did you mean" in one]
+    with pytest.warns(LimitWarning, match="controller 'c' sets 'moter', which no actuator is "
+                      "called and no controller reads: did you mean 'motor'"):
+        assert len(said(["moter"])) == 1
+    assert len(said(["motor", "braek"])) == 1
+    for quiet in (["motor"], ["motor", "motor_raw"], ["estimate"]):
+        assert not said(quiet)
+    assert not said(["moter"], inputs=["moter"], outputs=["motor"])
 
 
 def test_what_is_refused():
