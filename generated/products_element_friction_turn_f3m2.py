@@ -35,6 +35,8 @@ CONSTANTS = (
     Part("radius", (), "lever arm of the friction force; 1 along an axis [length]"),
     Part("preload", (), "normal force that is always there"),
     Part("per_moment", (), "one over the arm that turns moments into normal forces [1/length]"),
+    Part("across", (), "square of the share of the force across the axis in the normal force"),
+    Part("along", (), "likewise of the force along the axis"),
     Part("d", (3,), "direction normal to the axis, in axes of body a"),
     Part("n", (3,), "where it is at angle zero, in axes of body b"),
     Part("m", (3,), "and at a right angle, in axes of body b"),
@@ -50,7 +52,7 @@ DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 0
 OPERATIONS = {"residual": (158, 0, 0, 0),
               "column": (601, 0, 0, 0)}
-KEPT = 33      # numbers kept between two calls
+KEPT = 35      # numbers kept between two calls
 
 
 @kernel_function
@@ -72,15 +74,17 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         radius = constant[5]
         preload = constant[6]
         per_moment = constant[7]
-        d_x = constant[8]
-        d_y = constant[9]
-        d_z = constant[10]
-        n_x = constant[11]
-        n_y = constant[12]
-        n_z = constant[13]
-        m_x = constant[14]
-        m_y = constant[15]
-        m_z = constant[16]
+        across = constant[8]
+        along = constant[9]
+        d_x = constant[10]
+        d_y = constant[11]
+        d_z = constant[12]
+        n_x = constant[13]
+        n_y = constant[14]
+        n_z = constant[15]
+        m_x = constant[16]
+        m_y = constant[17]
+        m_z = constant[18]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -132,28 +136,37 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t15 = -Omb_y*t11 + Omb_z*t7 + t0*t14 + t1*t13 + t12*t2
         t16 = Omb_x*t11 - Omb_z*t3 + t12*t6 + t13*t5 + t14*t4
         t17 = -Omb_x*t7 + Omb_y*t3 + t10*t12 + t13*t9 + t14*t8
+        t18 = -m_y*n_z + m_z*n_y
+        t19 = m_x*n_z - m_z*n_x
+        t20 = -m_x*n_y + m_y*n_x
         angle_seen_1 = t3
         angle_seen_2 = t7
         angle_seen_3 = t11
         angle_along_n = n_x*t15 + n_y*t16 + n_z*t17
         angle_along_m = m_x*t15 + m_y*t16 + m_z*t17
-        t18 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-        t19 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-        t20 = atan2(t18, t19)
+        axis_1 = Rb_xx*t18 + Rb_xy*t19 + Rb_xz*t20
+        axis_2 = Rb_yx*t18 + Rb_yy*t19 + Rb_yz*t20
+        axis_3 = Rb_zx*t18 + Rb_zy*t19 + Rb_zz*t20
+        t21 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+        t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+        t23 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+        t24 = atan2(t22, t23)
         pressed = (radius*(per_moment*sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300) +
-            preload + sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)))
-        increment_1 = (-kept_angle + t20 + 6.283185307179586*floor(0.15915494309189535*kept_angle
-            - 0.15915494309189535*t20 + 0.5))
-        slip_1 = (angle_along_m*t19 - angle_along_n*t18)/(t18*t18 + t19*t19)
+            preload + sqrt(across*((-axis_1*t21 + force_1)*(-axis_1*t21 + force_1) + (-axis_2*t21
+            + force_2)*(-axis_2*t21 + force_2) + (-axis_3*t21 + force_3)*(-axis_3*t21 + force_3))
+            + along*t21*t21 + 1e-300)))
+        increment_1 = (-kept_angle + t24 + 6.283185307179586*floor(0.15915494309189535*kept_angle
+            - 0.15915494309189535*t24 + 0.5))
+        slip_1 = (angle_along_m*t23 - angle_along_n*t22)/(t22*t22 + t23*t23)
         z = increment_1*kept_begun + kept_bent
         dynamic_limit = coefficient*pressed
         static_limit = pressed*(coefficient if kept_slid - 0.5 > 0.0 else static)
         trial = bristle*z + bristle_damping*slip_1
         bent_size = sqrt(z*z + 1e-300)
         slip_speed = sqrt(slip_1*slip_1 + 1e-12*speed*speed + 1e-300)
-        t21 = slip_speed/speed
+        t25 = slip_speed/speed
         trial_size = sqrt(trial*trial + 1e-300)
-        drag = (pressed*(coefficient*tanh(4*t21) + (t21*(-coefficient +
+        drag = (pressed*(coefficient*tanh(4*t25) + (t25*(-coefficient +
             static))/((((0.25)*slip_speed*slip_speed)/(speed*speed) +
             0.75)*(((0.25)*slip_speed*slip_speed)/(speed*speed) + 0.75)))/slip_speed if speed >
             0.0 else 0.0)
@@ -161,44 +174,45 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         friction = (drag*slip_1 if speed > 0.0 else (dynamic_limit*trial/trial_size if
             -static_limit + trial_size > 0.0 else trial))
         if task == PREPARE:
-            t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t23 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t24 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t25 = d_y*t23 - d_z*t24
-            t26 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t27 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t28 = d_y*t26 - d_z*t27
-            t29 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t30 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t31 = d_y*t29 - d_z*t30
-            t32 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t33 = friction/(t22*t22 + t32*t32)
-            t34 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t35 = -d_x*t23 + d_z*t34
-            t36 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t37 = -d_x*t26 + d_z*t36
-            t38 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t39 = -d_x*t29 + d_z*t38
-            t40 = d_x*t24 - d_y*t34
-            t41 = d_x*t27 - d_y*t36
-            t42 = d_x*t30 - d_y*t38
-            t43 = atan2(t22, t32)
-            g[0] = t33*(-t22*(n_x*t25 + n_y*t28 + n_z*t31) + t32*(m_x*t25 + m_y*t28 + m_z*t31))
-            g[1] = t33*(-t22*(n_x*t35 + n_y*t37 + n_z*t39) + t32*(m_x*t35 + m_y*t37 + m_z*t39))
-            g[2] = t33*(-t22*(n_x*t40 + n_y*t41 + n_z*t42) + t32*(m_x*t40 + m_y*t41 + m_z*t42))
-            g[3] = (t33*(-t22*(-angle_seen_2*n_z + angle_seen_3*n_y) + t32*(-angle_seen_2*m_z +
+            t26 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t27 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t28 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t29 = d_y*t27 - d_z*t28
+            t30 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t31 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t32 = d_y*t30 - d_z*t31
+            t33 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t34 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t35 = d_y*t33 - d_z*t34
+            t36 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t37 = friction/(t26*t26 + t36*t36)
+            t38 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t39 = -d_x*t27 + d_z*t38
+            t40 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t41 = -d_x*t30 + d_z*t40
+            t42 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t43 = -d_x*t33 + d_z*t42
+            t44 = d_x*t28 - d_y*t38
+            t45 = d_x*t31 - d_y*t40
+            t46 = d_x*t34 - d_y*t42
+            t47 = atan2(t26, t36)
+            t48 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+            g[0] = t37*(-t26*(n_x*t29 + n_y*t32 + n_z*t35) + t36*(m_x*t29 + m_y*t32 + m_z*t35))
+            g[1] = t37*(-t26*(n_x*t39 + n_y*t41 + n_z*t43) + t36*(m_x*t39 + m_y*t41 + m_z*t43))
+            g[2] = t37*(-t26*(n_x*t44 + n_y*t45 + n_z*t46) + t36*(m_x*t44 + m_y*t45 + m_z*t46))
+            g[3] = (t37*(-t26*(-angle_seen_2*n_z + angle_seen_3*n_y) + t36*(-angle_seen_2*m_z +
                 angle_seen_3*m_y)))
-            g[4] = (t33*(-t22*(angle_seen_1*n_z - angle_seen_3*n_x) + t32*(angle_seen_1*m_z -
+            g[4] = (t37*(-t26*(angle_seen_1*n_z - angle_seen_3*n_x) + t36*(angle_seen_1*m_z -
                 angle_seen_3*m_x)))
-            g[5] = (t33*(-t22*(-angle_seen_1*n_y + angle_seen_2*n_x) + t32*(-angle_seen_1*m_y +
+            g[5] = (t37*(-t26*(-angle_seen_1*n_y + angle_seen_2*n_x) + t36*(-angle_seen_1*m_y +
                 angle_seen_2*m_x)))
             g[6] = 0.0
             g[7] = 0.0
             g[8] = 0.0
             g[9] = 0.0
             g[10] = 0.0
-            frames[index[first + AT_FRAME]] = (t43 +
-                6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t43 +
+            frames[index[first + AT_FRAME]] = (t47 +
+                6.283185307179586*floor(0.15915494309189535*kept_angle - 0.15915494309189535*t47 +
                 0.5))
             frames[index[first + AT_FRAME] + 1] = (z*(0.0 if speed > 0.0 else
                 ((dynamic_limit/(bent_size*bristle) if bent_size*bristle - dynamic_limit > 0.0
@@ -206,8 +220,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             frames[index[first + AT_FRAME] + 2] = slips
             frames[index[first + AT_FRAME] + 3] = 1.0
             frames[index[first + AT_FRAME] + 4] = (per_moment*sqrt(moment_1*moment_1 +
-                moment_2*moment_2 + 1e-300) + preload + sqrt(force_1*force_1 + force_2*force_2 +
-                force_3*force_3 + 1e-300))
+                moment_2*moment_2 + 1e-300) + preload + sqrt(across*((-axis_1*t48 +
+                force_1)*(-axis_1*t48 + force_1) + (-axis_2*t48 + force_2)*(-axis_2*t48 + force_2)
+                + (-axis_3*t48 + force_3)*(-axis_3*t48 + force_3)) + along*t48*t48 + 1e-300))
         if task == ALONG:
             dtha_x = vectors[11]
             dtha_y = vectors[12]
@@ -237,646 +252,741 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             delta_radius = kept[21]
             delta_preload = kept[22]
             delta_per_moment = kept[23]
-            delta_d_x = kept[24]
-            delta_d_y = kept[25]
-            delta_d_z = kept[26]
-            delta_n_x = kept[27]
-            delta_n_y = kept[28]
-            delta_n_z = kept[29]
-            delta_m_x = kept[30]
-            delta_m_y = kept[31]
-            delta_m_z = kept[32]
-            t22 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t23 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t24 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t25 = Rb_xy*dthb_z - Rb_xz*dthb_y
-            t26 = Rb_yy*dthb_z - Rb_yz*dthb_y
-            t27 = Rb_zy*dthb_z - Rb_zz*dthb_y
-            t28 = Ra_xy*dtha_z - Ra_xz*dtha_y
-            t29 = Ra_yy*dtha_z - Ra_yz*dtha_y
-            t30 = Ra_zy*dtha_z - Ra_zz*dtha_y
-            t31 = Ra_xx*t25 + Ra_yx*t26 + Ra_zx*t27 + Rb_xx*t28 + Rb_yx*t29 + Rb_zx*t30
-            t32 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-            t33 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-            t34 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-            t35 = Ra_xy*t25 + Ra_yy*t26 + Ra_zy*t27 + Rb_xx*t32 + Rb_yx*t33 + Rb_zx*t34
-            t36 = Ra_xx*dtha_y - Ra_xy*dtha_x
-            t37 = Ra_yx*dtha_y - Ra_yy*dtha_x
-            t38 = Ra_zx*dtha_y - Ra_zy*dtha_x
-            t39 = Ra_xz*t25 + Ra_yz*t26 + Ra_zz*t27 + Rb_xx*t36 + Rb_yx*t37 + Rb_zx*t38
-            t40 = d_x*t31 + d_y*t35 + d_z*t39 + delta_d_x*t22 + delta_d_y*t23 + delta_d_z*t24
-            t41 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t42 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t43 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t44 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-            t45 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-            t46 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-            t47 = Ra_xx*t44 + Ra_yx*t45 + Ra_zx*t46 + Rb_xy*t28 + Rb_yy*t29 + Rb_zy*t30
-            t48 = Ra_xy*t44 + Ra_yy*t45 + Ra_zy*t46 + Rb_xy*t32 + Rb_yy*t33 + Rb_zy*t34
-            t49 = Ra_xz*t44 + Ra_yz*t45 + Ra_zz*t46 + Rb_xy*t36 + Rb_yy*t37 + Rb_zy*t38
-            t50 = d_x*t47 + d_y*t48 + d_z*t49 + delta_d_x*t41 + delta_d_y*t42 + delta_d_z*t43
-            t51 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t52 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t53 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t54 = Rb_xx*dthb_y - Rb_xy*dthb_x
-            t55 = Rb_yx*dthb_y - Rb_yy*dthb_x
-            t56 = Rb_zx*dthb_y - Rb_zy*dthb_x
-            t57 = Ra_xx*t54 + Ra_yx*t55 + Ra_zx*t56 + Rb_xz*t28 + Rb_yz*t29 + Rb_zz*t30
-            t58 = Ra_xy*t54 + Ra_yy*t55 + Ra_zy*t56 + Rb_xz*t32 + Rb_yz*t33 + Rb_zz*t34
-            t59 = Ra_xz*t54 + Ra_yz*t55 + Ra_zz*t56 + Rb_xz*t36 + Rb_yz*t37 + Rb_zz*t38
-            t60 = d_x*t57 + d_y*t58 + d_z*t59 + delta_d_x*t51 + delta_d_y*t52 + delta_d_z*t53
-            t61 = Oma_x*d_y - Oma_y*d_x
-            t62 = -Oma_x*d_z + Oma_z*d_x
-            t63 = Oma_y*d_z - Oma_z*d_y
-            t64 = d_x*t41 + d_y*t42 + d_z*t43
-            t65 = d_x*t51 + d_y*t52 + d_z*t53
-            t66 = -Omb_y*t65 + Omb_z*t64 + t22*t63 + t23*t62 + t24*t61
-            t67 = d_x*t22 + d_y*t23 + d_z*t24
-            t68 = Omb_x*t65 - Omb_z*t67 + t41*t63 + t42*t62 + t43*t61
-            t69 = -Omb_x*t64 + Omb_y*t67 + t51*t63 + t52*t62 + t53*t61
-            t70 = Oma_y*delta_d_z - Oma_z*delta_d_y - d_y*utha_z + d_z*utha_y
-            t71 = -Oma_x*delta_d_z + Oma_z*delta_d_x + d_x*utha_z - d_z*utha_x
-            t72 = Oma_x*delta_d_y - Oma_y*delta_d_x - d_x*utha_y + d_y*utha_x
-            t73 = (-Omb_y*t60 + Omb_z*t50 + t22*t70 + t23*t71 + t24*t72 + t31*t63 + t35*t62 +
-                t39*t61 + t64*uthb_z - t65*uthb_y)
-            t74 = (Omb_x*t60 - Omb_z*t40 + t41*t70 + t42*t71 + t43*t72 + t47*t63 + t48*t62 +
-                t49*t61 + t65*uthb_x - t67*uthb_z)
-            t75 = (-Omb_x*t50 + Omb_y*t40 + t51*t70 + t52*t71 + t53*t72 + t57*t63 + t58*t62 +
-                t59*t61 - t64*uthb_x + t67*uthb_y)
-            delta_angle_seen_1 = t40
-            delta_angle_seen_2 = t50
-            delta_angle_seen_3 = t60
-            delta_angle_along_n = (delta_n_x*t66 + delta_n_y*t68 + delta_n_z*t69 + n_x*t73 +
-                n_y*t74 + n_z*t75)
-            delta_angle_along_m = (delta_m_x*t66 + delta_m_y*t68 + delta_m_z*t69 + m_x*t73 +
-                m_y*t74 + m_z*t75)
-            t76 = sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
-            t77 = sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)
-            t78 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t79 = angle_seen_1*delta_m_x
-            t80 = angle_seen_2*delta_m_y
-            t81 = angle_seen_3*delta_m_z
-            t82 = delta_angle_seen_1*m_x
-            t83 = delta_angle_seen_2*m_y
-            t84 = delta_angle_seen_3*m_z
-            t85 = t79 + t80 + t81 + t82 + t83 + t84
-            t86 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t87 = t78*t78 + t86*t86
-            t88 = 1/t87
-            t89 = angle_seen_1*delta_n_x
-            t90 = angle_seen_2*delta_n_y
-            t91 = angle_seen_3*delta_n_z
-            t92 = delta_angle_seen_1*n_x
-            t93 = delta_angle_seen_2*n_y
-            t94 = delta_angle_seen_3*n_z
-            t95 = t89 + t90 + t91 + t92 + t93 + t94
-            delta_pressed = (delta_radius*(per_moment*t76 + preload + t77) +
-                radius*(delta_per_moment*t76 + delta_preload + per_moment*(delta_moment_1*moment_1
-                + delta_moment_2*moment_2)/t76 + (delta_force_1*force_1 + delta_force_2*force_2 +
-                delta_force_3*force_3)/t77))
-            delta_increment_1 = -delta_kept_angle + t78*t85*t88 - t86*t88*t95
-            delta_slip_1 = (t88*(angle_along_m*t95 - angle_along_n*t85 + delta_angle_along_m*t78 -
-                delta_angle_along_n*t86) + ((angle_along_m*t78 - angle_along_n*t86)*(-t78*(2*t89 +
-                2*t90 + 2*t91 + 2*t92 + 2*t93 + 2*t94) - t86*(2*t79 + 2*t80 + 2*t81 + 2*t82 +
-                2*t83 + 2*t84)))/(t87*t87))
-            t96 = delta_coefficient*pressed
-            t97 = kept_slid - 0.5
+            delta_across = kept[24]
+            delta_along = kept[25]
+            delta_d_x = kept[26]
+            delta_d_y = kept[27]
+            delta_d_z = kept[28]
+            delta_n_x = kept[29]
+            delta_n_y = kept[30]
+            delta_n_z = kept[31]
+            delta_m_x = kept[32]
+            delta_m_y = kept[33]
+            delta_m_z = kept[34]
+            t26 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t27 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t28 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t29 = Rb_xy*dthb_z - Rb_xz*dthb_y
+            t30 = Rb_yy*dthb_z - Rb_yz*dthb_y
+            t31 = Rb_zy*dthb_z - Rb_zz*dthb_y
+            t32 = Ra_xy*dtha_z - Ra_xz*dtha_y
+            t33 = Ra_yy*dtha_z - Ra_yz*dtha_y
+            t34 = Ra_zy*dtha_z - Ra_zz*dtha_y
+            t35 = Ra_xx*t29 + Ra_yx*t30 + Ra_zx*t31 + Rb_xx*t32 + Rb_yx*t33 + Rb_zx*t34
+            t36 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+            t37 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+            t38 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+            t39 = Ra_xy*t29 + Ra_yy*t30 + Ra_zy*t31 + Rb_xx*t36 + Rb_yx*t37 + Rb_zx*t38
+            t40 = Ra_xx*dtha_y - Ra_xy*dtha_x
+            t41 = Ra_yx*dtha_y - Ra_yy*dtha_x
+            t42 = Ra_zx*dtha_y - Ra_zy*dtha_x
+            t43 = Ra_xz*t29 + Ra_yz*t30 + Ra_zz*t31 + Rb_xx*t40 + Rb_yx*t41 + Rb_zx*t42
+            t44 = d_x*t35 + d_y*t39 + d_z*t43 + delta_d_x*t26 + delta_d_y*t27 + delta_d_z*t28
+            t45 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t46 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t47 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t48 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+            t49 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+            t50 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+            t51 = Ra_xx*t48 + Ra_yx*t49 + Ra_zx*t50 + Rb_xy*t32 + Rb_yy*t33 + Rb_zy*t34
+            t52 = Ra_xy*t48 + Ra_yy*t49 + Ra_zy*t50 + Rb_xy*t36 + Rb_yy*t37 + Rb_zy*t38
+            t53 = Ra_xz*t48 + Ra_yz*t49 + Ra_zz*t50 + Rb_xy*t40 + Rb_yy*t41 + Rb_zy*t42
+            t54 = d_x*t51 + d_y*t52 + d_z*t53 + delta_d_x*t45 + delta_d_y*t46 + delta_d_z*t47
+            t55 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t56 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t57 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t58 = Rb_xx*dthb_y - Rb_xy*dthb_x
+            t59 = Rb_yx*dthb_y - Rb_yy*dthb_x
+            t60 = Rb_zx*dthb_y - Rb_zy*dthb_x
+            t61 = Ra_xx*t58 + Ra_yx*t59 + Ra_zx*t60 + Rb_xz*t32 + Rb_yz*t33 + Rb_zz*t34
+            t62 = Ra_xy*t58 + Ra_yy*t59 + Ra_zy*t60 + Rb_xz*t36 + Rb_yz*t37 + Rb_zz*t38
+            t63 = Ra_xz*t58 + Ra_yz*t59 + Ra_zz*t60 + Rb_xz*t40 + Rb_yz*t41 + Rb_zz*t42
+            t64 = d_x*t61 + d_y*t62 + d_z*t63 + delta_d_x*t55 + delta_d_y*t56 + delta_d_z*t57
+            t65 = Oma_x*d_y - Oma_y*d_x
+            t66 = -Oma_x*d_z + Oma_z*d_x
+            t67 = Oma_y*d_z - Oma_z*d_y
+            t68 = d_x*t45 + d_y*t46 + d_z*t47
+            t69 = d_x*t55 + d_y*t56 + d_z*t57
+            t70 = -Omb_y*t69 + Omb_z*t68 + t26*t67 + t27*t66 + t28*t65
+            t71 = d_x*t26 + d_y*t27 + d_z*t28
+            t72 = Omb_x*t69 - Omb_z*t71 + t45*t67 + t46*t66 + t47*t65
+            t73 = -Omb_x*t68 + Omb_y*t71 + t55*t67 + t56*t66 + t57*t65
+            t74 = Oma_y*delta_d_z - Oma_z*delta_d_y - d_y*utha_z + d_z*utha_y
+            t75 = -Oma_x*delta_d_z + Oma_z*delta_d_x + d_x*utha_z - d_z*utha_x
+            t76 = Oma_x*delta_d_y - Oma_y*delta_d_x - d_x*utha_y + d_y*utha_x
+            t77 = (-Omb_y*t64 + Omb_z*t54 + t26*t74 + t27*t75 + t28*t76 + t35*t67 + t39*t66 +
+                t43*t65 + t68*uthb_z - t69*uthb_y)
+            t78 = (Omb_x*t64 - Omb_z*t44 + t45*t74 + t46*t75 + t47*t76 + t51*t67 + t52*t66 +
+                t53*t65 + t69*uthb_x - t71*uthb_z)
+            t79 = (-Omb_x*t54 + Omb_y*t44 + t55*t74 + t56*t75 + t57*t76 + t61*t67 + t62*t66 +
+                t63*t65 - t68*uthb_x + t71*uthb_y)
+            t80 = -delta_m_y*n_z + delta_m_z*n_y + delta_n_y*m_z - delta_n_z*m_y
+            t81 = delta_m_x*n_z - delta_m_z*n_x - delta_n_x*m_z + delta_n_z*m_x
+            t82 = -delta_m_x*n_y + delta_m_y*n_x + delta_n_x*m_y - delta_n_y*m_x
+            t83 = -m_x*n_y + m_y*n_x
+            t84 = m_x*n_z - m_z*n_x
+            t85 = -m_y*n_z + m_z*n_y
+            delta_angle_seen_1 = t44
+            delta_angle_seen_2 = t54
+            delta_angle_seen_3 = t64
+            delta_angle_along_n = (delta_n_x*t70 + delta_n_y*t72 + delta_n_z*t73 + n_x*t77 +
+                n_y*t78 + n_z*t79)
+            delta_angle_along_m = (delta_m_x*t70 + delta_m_y*t72 + delta_m_z*t73 + m_x*t77 +
+                m_y*t78 + m_z*t79)
+            delta_axis_1 = Rb_xx*t80 + Rb_xy*t81 + Rb_xz*t82 + t29*t85 + t48*t84 + t58*t83
+            delta_axis_2 = Rb_yx*t80 + Rb_yy*t81 + Rb_yz*t82 + t30*t85 + t49*t84 + t59*t83
+            delta_axis_3 = Rb_zx*t80 + Rb_zy*t81 + Rb_zz*t82 + t31*t85 + t50*t84 + t60*t83
+            t86 = sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
+            t87 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+            t88 = t87*t87
+            t89 = -axis_1*t87 + force_1
+            t90 = -axis_2*t87 + force_2
+            t91 = -axis_3*t87 + force_3
+            t92 = t89*t89 + t90*t90 + t91*t91
+            t93 = sqrt(across*t92 + along*t88 + 1e-300)
+            t94 = axis_2*delta_force_2
+            t95 = axis_3*delta_force_3
+            t96 = delta_axis_1*force_1
+            t97 = delta_axis_2*force_2
+            t98 = delta_axis_3*force_3
+            t99 = 2*t87
+            t100 = 2*axis_1*delta_force_1 + 2*t94 + 2*t95 + 2*t96 + 2*t97 + 2*t98
+            t101 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t102 = angle_seen_1*delta_m_x
+            t103 = angle_seen_2*delta_m_y
+            t104 = angle_seen_3*delta_m_z
+            t105 = delta_angle_seen_1*m_x
+            t106 = delta_angle_seen_2*m_y
+            t107 = delta_angle_seen_3*m_z
+            t108 = t102 + t103 + t104 + t105 + t106 + t107
+            t109 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t110 = t101*t101 + t109*t109
+            t111 = 1/t110
+            t112 = angle_seen_1*delta_n_x
+            t113 = angle_seen_2*delta_n_y
+            t114 = angle_seen_3*delta_n_z
+            t115 = delta_angle_seen_1*n_x
+            t116 = delta_angle_seen_2*n_y
+            t117 = delta_angle_seen_3*n_z
+            t118 = t112 + t113 + t114 + t115 + t116 + t117
+            delta_pressed = (delta_radius*(per_moment*t86 + preload + t93) +
+                radius*(delta_per_moment*t86 + delta_preload + per_moment*(delta_moment_1*moment_1
+                + delta_moment_2*moment_2)/t86 + ((0.5)*across*(t89*(-axis_1*t100 -
+                delta_axis_1*t99 + 2*delta_force_1) + t90*(-axis_2*t100 - delta_axis_2*t99 +
+                2*delta_force_2) + t91*(-axis_3*t100 - delta_axis_3*t99 + 2*delta_force_3)) +
+                (0.5)*along*t87*(2*axis_1*delta_force_1 + 2*t94 + 2*t95 + 2*t96 + 2*t97 + 2*t98) +
+                (0.5)*delta_across*t92 + (0.5)*delta_along*t88)/t93))
+            delta_increment_1 = -delta_kept_angle + t101*t108*t111 - t109*t111*t118
+            delta_slip_1 = (t111*(angle_along_m*t118 - angle_along_n*t108 +
+                delta_angle_along_m*t101 - delta_angle_along_n*t109) + ((angle_along_m*t101 -
+                angle_along_n*t109)*(-t101*(2*t112 + 2*t113 + 2*t114 + 2*t115 + 2*t116 + 2*t117) -
+                t109*(2*t102 + 2*t103 + 2*t104 + 2*t105 + 2*t106 + 2*t107)))/(t110*t110))
+            t119 = delta_coefficient*pressed
+            t120 = kept_slid - 0.5
             delta_z = delta_increment_1*kept_begun + delta_kept_begun*increment_1 + delta_kept_bent
-            delta_dynamic_limit = coefficient*delta_pressed + t96
+            delta_dynamic_limit = coefficient*delta_pressed + t119
             delta_trial = (bristle*delta_z + bristle_damping*delta_slip_1 + delta_bristle*z +
                 delta_bristle_damping*slip_1)
             delta_bent_size = delta_z*z/sqrt(z*z + 1e-300)
             delta_slip_speed = ((delta_slip_1*slip_1 + 1e-12*delta_speed*speed)/sqrt(slip_1*slip_1
                 + 1e-12*speed*speed + 1e-300))
-            t98 = 1/speed
-            t99 = slip_speed*slip_speed
-            t100 = 1/(speed*speed)
-            t101 = (0.25)*t100*t99 + 0.75
-            t102 = 1/(t101*t101)
-            t103 = t102*t98
-            t104 = slip_speed*t98
-            t105 = tanh(4*t104)
-            t106 = t102*t104
-            t107 = 1/slip_speed
-            t108 = pressed*t107
-            t109 = -coefficient + static
-            t110 = coefficient*t105 + t106*t109
-            t111 = 4*coefficient*(1 - t105*t105)
-            t112 = slip_speed*t100
-            t113 = 1/(t101*t101*t101)
+            t121 = 1/speed
+            t122 = slip_speed*slip_speed
+            t123 = 1/(speed*speed)
+            t124 = (0.25)*t122*t123 + 0.75
+            t125 = 1/(t124*t124)
+            t126 = t121*t125
+            t127 = slip_speed*t121
+            t128 = tanh(4*t127)
+            t129 = t125*t127
+            t130 = 1/slip_speed
+            t131 = pressed*t130
+            t132 = -coefficient + static
+            t133 = coefficient*t128 + t129*t132
+            t134 = 4*coefficient*(1 - t128*t128)
+            t135 = slip_speed*t123
+            t136 = 1/(t124*t124*t124)
             delta_trial_size = delta_trial*trial/sqrt(trial*trial + 1e-300)
-            delta_drag = (delta_coefficient*(t108*(t105 - t106) if speed > 0.0 else 0) +
-                delta_pressed*(t107*t110 if speed > 0.0 else 0) +
-                delta_slip_speed*(-pressed*t110/t99 + t108*(t103*t109 + t111*t98 +
-                (-t109*t113*t99)/(speed*speed*speed)) if speed > 0.0 else 0) +
-                delta_speed*(t108*((slip_speed*slip_speed*slip_speed*t109*t113)/(speed*speed*speed*speed)
-                - t102*t109*t112 - t111*t112) if speed > 0.0 else 0) + delta_static*(pressed*t103
+            delta_drag = (delta_coefficient*(t131*(t128 - t129) if speed > 0.0 else 0) +
+                delta_pressed*(t130*t133 if speed > 0.0 else 0) +
+                delta_slip_speed*(-pressed*t133/t122 + t131*(t121*t134 + t126*t132 +
+                (-t122*t132*t136)/(speed*speed*speed)) if speed > 0.0 else 0) +
+                delta_speed*(t131*((slip_speed*slip_speed*slip_speed*t132*t136)/(speed*speed*speed*speed)
+                - t125*t132*t135 - t134*t135) if speed > 0.0 else 0) + delta_static*(pressed*t126
                 if speed > 0.0 else 0))
-            t114 = -static_limit + trial_size
-            t115 = 1/trial_size
+            t137 = -static_limit + trial_size
+            t138 = 1/trial_size
             delta_friction = (delta_drag*(slip_1 if speed > 0.0 else 0) + delta_dynamic_limit*(0
-                if speed > 0.0 else (t115*trial if t114 > 0.0 else 0)) + delta_slip_1*(drag if
-                speed > 0.0 else 0) + delta_trial*(0 if speed > 0.0 else (dynamic_limit*t115 if
-                t114 > 0.0 else 1)) + delta_trial_size*(0 if speed > 0.0 else
-                ((-dynamic_limit*trial)/(trial_size*trial_size) if t114 > 0.0 else 0)))
-            t116 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t117 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t118 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t119 = d_y*t117 - d_z*t118
-            t120 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t121 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t122 = d_y*t120 - d_z*t121
-            t123 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t124 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t125 = d_y*t123 - d_z*t124
-            t126 = n_x*t119 + n_y*t122 + n_z*t125
-            t127 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t128 = m_x*t119 + m_y*t122 + m_z*t125
-            t129 = -t116*t126 + t127*t128
-            t130 = t116*t116 + t127*t127
-            t131 = 1/t130
-            t132 = delta_friction*t131
-            t133 = angle_seen_1*delta_m_x
-            t134 = angle_seen_2*delta_m_y
-            t135 = angle_seen_3*delta_m_z
-            t136 = delta_angle_seen_1*m_x
-            t137 = delta_angle_seen_2*m_y
-            t138 = delta_angle_seen_3*m_z
-            t139 = angle_seen_1*delta_n_x
-            t140 = angle_seen_2*delta_n_y
-            t141 = angle_seen_3*delta_n_z
-            t142 = delta_angle_seen_1*n_x
-            t143 = delta_angle_seen_2*n_y
-            t144 = delta_angle_seen_3*n_z
-            t145 = ((friction*(-t116*(2*t133 + 2*t134 + 2*t135 + 2*t136 + 2*t137 + 2*t138) -
-                t127*(2*t139 + 2*t140 + 2*t141 + 2*t142 + 2*t143 + 2*t144)))/(t130*t130))
-            t146 = t133 + t134 + t135 + t136 + t137 + t138
-            t147 = t139 + t140 + t141 + t142 + t143 + t144
-            t148 = Rb_xy*dthb_z - Rb_xz*dthb_y
-            t149 = Rb_yy*dthb_z - Rb_yz*dthb_y
-            t150 = Rb_zy*dthb_z - Rb_zz*dthb_y
-            t151 = Ra_xx*dtha_y - Ra_xy*dtha_x
-            t152 = Ra_yx*dtha_y - Ra_yy*dtha_x
-            t153 = Ra_zx*dtha_y - Ra_zy*dtha_x
-            t154 = Ra_xz*t148 + Ra_yz*t149 + Ra_zz*t150 + Rb_xx*t151 + Rb_yx*t152 + Rb_zx*t153
-            t155 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-            t156 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-            t157 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-            t158 = Ra_xy*t148 + Ra_yy*t149 + Ra_zy*t150 + Rb_xx*t155 + Rb_yx*t156 + Rb_zx*t157
-            t159 = d_y*t154 - d_z*t158 + delta_d_y*t117 - delta_d_z*t118
-            t160 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-            t161 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-            t162 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-            t163 = Ra_xz*t160 + Ra_yz*t161 + Ra_zz*t162 + Rb_xy*t151 + Rb_yy*t152 + Rb_zy*t153
-            t164 = Ra_xy*t160 + Ra_yy*t161 + Ra_zy*t162 + Rb_xy*t155 + Rb_yy*t156 + Rb_zy*t157
-            t165 = d_y*t163 - d_z*t164 + delta_d_y*t120 - delta_d_z*t121
-            t166 = Rb_xx*dthb_y - Rb_xy*dthb_x
-            t167 = Rb_yx*dthb_y - Rb_yy*dthb_x
-            t168 = Rb_zx*dthb_y - Rb_zy*dthb_x
-            t169 = Ra_xz*t166 + Ra_yz*t167 + Ra_zz*t168 + Rb_xz*t151 + Rb_yz*t152 + Rb_zz*t153
-            t170 = Ra_xy*t166 + Ra_yy*t167 + Ra_zy*t168 + Rb_xz*t155 + Rb_yz*t156 + Rb_zz*t157
-            t171 = d_y*t169 - d_z*t170 + delta_d_y*t123 - delta_d_z*t124
-            t172 = friction*t131
-            t173 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t174 = -d_x*t117 + d_z*t173
-            t175 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t176 = -d_x*t120 + d_z*t175
-            t177 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t178 = -d_x*t123 + d_z*t177
-            t179 = n_x*t174 + n_y*t176 + n_z*t178
-            t180 = m_x*t174 + m_y*t176 + m_z*t178
-            t181 = -t116*t179 + t127*t180
-            t182 = Ra_xy*dtha_z - Ra_xz*dtha_y
-            t183 = Ra_yy*dtha_z - Ra_yz*dtha_y
-            t184 = Ra_zy*dtha_z - Ra_zz*dtha_y
-            t185 = Ra_xx*t148 + Ra_yx*t149 + Ra_zx*t150 + Rb_xx*t182 + Rb_yx*t183 + Rb_zx*t184
-            t186 = -d_x*t154 + d_z*t185 - delta_d_x*t117 + delta_d_z*t173
-            t187 = Ra_xx*t160 + Ra_yx*t161 + Ra_zx*t162 + Rb_xy*t182 + Rb_yy*t183 + Rb_zy*t184
-            t188 = -d_x*t163 + d_z*t187 - delta_d_x*t120 + delta_d_z*t175
-            t189 = Ra_xx*t166 + Ra_yx*t167 + Ra_zx*t168 + Rb_xz*t182 + Rb_yz*t183 + Rb_zz*t184
-            t190 = -d_x*t169 + d_z*t189 - delta_d_x*t123 + delta_d_z*t177
-            t191 = d_x*t118 - d_y*t173
-            t192 = d_x*t121 - d_y*t175
-            t193 = d_x*t124 - d_y*t177
-            t194 = n_x*t191 + n_y*t192 + n_z*t193
-            t195 = m_x*t191 + m_y*t192 + m_z*t193
-            t196 = -t116*t194 + t127*t195
-            t197 = d_x*t158 - d_y*t185 + delta_d_x*t118 - delta_d_y*t173
-            t198 = d_x*t164 - d_y*t187 + delta_d_x*t121 - delta_d_y*t175
-            t199 = d_x*t170 - d_y*t189 + delta_d_x*t124 - delta_d_y*t177
-            t200 = -angle_seen_2*m_z + angle_seen_3*m_y
-            t201 = -angle_seen_2*n_z + angle_seen_3*n_y
-            t202 = -t116*t201 + t127*t200
-            t203 = angle_seen_1*m_z - angle_seen_3*m_x
-            t204 = angle_seen_1*n_z - angle_seen_3*n_x
-            t205 = -t116*t204 + t127*t203
-            t206 = -angle_seen_1*m_y + angle_seen_2*m_x
-            t207 = -angle_seen_1*n_y + angle_seen_2*n_x
-            t208 = -t116*t207 + t127*t206
-            t209 = slips - 0.5
-            t210 = bent_size*bristle - dynamic_limit
-            t211 = 1/bent_size
-            t212 = 1/bristle
-            t213 = t211*t212
-            t214 = sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
-            vectors[0] = (t129*t132 + t129*t145 + t172*(-t116*(delta_n_x*t119 + delta_n_y*t122 +
-                delta_n_z*t125 + n_x*t159 + n_y*t165 + n_z*t171) - t126*t146 +
-                t127*(delta_m_x*t119 + delta_m_y*t122 + delta_m_z*t125 + m_x*t159 + m_y*t165 +
-                m_z*t171) + t128*t147))
-            vectors[1] = (t132*t181 + t145*t181 + t172*(-t116*(delta_n_x*t174 + delta_n_y*t176 +
-                delta_n_z*t178 + n_x*t186 + n_y*t188 + n_z*t190) + t127*(delta_m_x*t174 +
-                delta_m_y*t176 + delta_m_z*t178 + m_x*t186 + m_y*t188 + m_z*t190) - t146*t179 +
-                t147*t180))
-            vectors[2] = (t132*t196 + t145*t196 + t172*(-t116*(delta_n_x*t191 + delta_n_y*t192 +
-                delta_n_z*t193 + n_x*t197 + n_y*t198 + n_z*t199) + t127*(delta_m_x*t191 +
-                delta_m_y*t192 + delta_m_z*t193 + m_x*t197 + m_y*t198 + m_z*t199) - t146*t194 +
-                t147*t195))
-            vectors[3] = (t132*t202 + t145*t202 + t172*(-t116*(-angle_seen_2*delta_n_z +
+                if speed > 0.0 else (t138*trial if t137 > 0.0 else 0)) + delta_slip_1*(drag if
+                speed > 0.0 else 0) + delta_trial*(0 if speed > 0.0 else (dynamic_limit*t138 if
+                t137 > 0.0 else 1)) + delta_trial_size*(0 if speed > 0.0 else
+                ((-dynamic_limit*trial)/(trial_size*trial_size) if t137 > 0.0 else 0)))
+            t139 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t140 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t141 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t142 = d_y*t140 - d_z*t141
+            t143 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t144 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t145 = d_y*t143 - d_z*t144
+            t146 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t147 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t148 = d_y*t146 - d_z*t147
+            t149 = n_x*t142 + n_y*t145 + n_z*t148
+            t150 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t151 = m_x*t142 + m_y*t145 + m_z*t148
+            t152 = -t139*t149 + t150*t151
+            t153 = t139*t139 + t150*t150
+            t154 = 1/t153
+            t155 = delta_friction*t154
+            t156 = angle_seen_1*delta_m_x
+            t157 = angle_seen_2*delta_m_y
+            t158 = angle_seen_3*delta_m_z
+            t159 = delta_angle_seen_1*m_x
+            t160 = delta_angle_seen_2*m_y
+            t161 = delta_angle_seen_3*m_z
+            t162 = angle_seen_1*delta_n_x
+            t163 = angle_seen_2*delta_n_y
+            t164 = angle_seen_3*delta_n_z
+            t165 = delta_angle_seen_1*n_x
+            t166 = delta_angle_seen_2*n_y
+            t167 = delta_angle_seen_3*n_z
+            t168 = ((friction*(-t139*(2*t156 + 2*t157 + 2*t158 + 2*t159 + 2*t160 + 2*t161) -
+                t150*(2*t162 + 2*t163 + 2*t164 + 2*t165 + 2*t166 + 2*t167)))/(t153*t153))
+            t169 = t156 + t157 + t158 + t159 + t160 + t161
+            t170 = t162 + t163 + t164 + t165 + t166 + t167
+            t171 = Rb_xy*dthb_z - Rb_xz*dthb_y
+            t172 = Rb_yy*dthb_z - Rb_yz*dthb_y
+            t173 = Rb_zy*dthb_z - Rb_zz*dthb_y
+            t174 = Ra_xx*dtha_y - Ra_xy*dtha_x
+            t175 = Ra_yx*dtha_y - Ra_yy*dtha_x
+            t176 = Ra_zx*dtha_y - Ra_zy*dtha_x
+            t177 = Ra_xz*t171 + Ra_yz*t172 + Ra_zz*t173 + Rb_xx*t174 + Rb_yx*t175 + Rb_zx*t176
+            t178 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+            t179 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+            t180 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+            t181 = Ra_xy*t171 + Ra_yy*t172 + Ra_zy*t173 + Rb_xx*t178 + Rb_yx*t179 + Rb_zx*t180
+            t182 = d_y*t177 - d_z*t181 + delta_d_y*t140 - delta_d_z*t141
+            t183 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+            t184 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+            t185 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+            t186 = Ra_xz*t183 + Ra_yz*t184 + Ra_zz*t185 + Rb_xy*t174 + Rb_yy*t175 + Rb_zy*t176
+            t187 = Ra_xy*t183 + Ra_yy*t184 + Ra_zy*t185 + Rb_xy*t178 + Rb_yy*t179 + Rb_zy*t180
+            t188 = d_y*t186 - d_z*t187 + delta_d_y*t143 - delta_d_z*t144
+            t189 = Rb_xx*dthb_y - Rb_xy*dthb_x
+            t190 = Rb_yx*dthb_y - Rb_yy*dthb_x
+            t191 = Rb_zx*dthb_y - Rb_zy*dthb_x
+            t192 = Ra_xz*t189 + Ra_yz*t190 + Ra_zz*t191 + Rb_xz*t174 + Rb_yz*t175 + Rb_zz*t176
+            t193 = Ra_xy*t189 + Ra_yy*t190 + Ra_zy*t191 + Rb_xz*t178 + Rb_yz*t179 + Rb_zz*t180
+            t194 = d_y*t192 - d_z*t193 + delta_d_y*t146 - delta_d_z*t147
+            t195 = friction*t154
+            t196 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t197 = -d_x*t140 + d_z*t196
+            t198 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t199 = -d_x*t143 + d_z*t198
+            t200 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t201 = -d_x*t146 + d_z*t200
+            t202 = n_x*t197 + n_y*t199 + n_z*t201
+            t203 = m_x*t197 + m_y*t199 + m_z*t201
+            t204 = -t139*t202 + t150*t203
+            t205 = Ra_xy*dtha_z - Ra_xz*dtha_y
+            t206 = Ra_yy*dtha_z - Ra_yz*dtha_y
+            t207 = Ra_zy*dtha_z - Ra_zz*dtha_y
+            t208 = Ra_xx*t171 + Ra_yx*t172 + Ra_zx*t173 + Rb_xx*t205 + Rb_yx*t206 + Rb_zx*t207
+            t209 = -d_x*t177 + d_z*t208 - delta_d_x*t140 + delta_d_z*t196
+            t210 = Ra_xx*t183 + Ra_yx*t184 + Ra_zx*t185 + Rb_xy*t205 + Rb_yy*t206 + Rb_zy*t207
+            t211 = -d_x*t186 + d_z*t210 - delta_d_x*t143 + delta_d_z*t198
+            t212 = Ra_xx*t189 + Ra_yx*t190 + Ra_zx*t191 + Rb_xz*t205 + Rb_yz*t206 + Rb_zz*t207
+            t213 = -d_x*t192 + d_z*t212 - delta_d_x*t146 + delta_d_z*t200
+            t214 = d_x*t141 - d_y*t196
+            t215 = d_x*t144 - d_y*t198
+            t216 = d_x*t147 - d_y*t200
+            t217 = n_x*t214 + n_y*t215 + n_z*t216
+            t218 = m_x*t214 + m_y*t215 + m_z*t216
+            t219 = -t139*t217 + t150*t218
+            t220 = d_x*t181 - d_y*t208 + delta_d_x*t141 - delta_d_y*t196
+            t221 = d_x*t187 - d_y*t210 + delta_d_x*t144 - delta_d_y*t198
+            t222 = d_x*t193 - d_y*t212 + delta_d_x*t147 - delta_d_y*t200
+            t223 = -angle_seen_2*m_z + angle_seen_3*m_y
+            t224 = -angle_seen_2*n_z + angle_seen_3*n_y
+            t225 = -t139*t224 + t150*t223
+            t226 = angle_seen_1*m_z - angle_seen_3*m_x
+            t227 = angle_seen_1*n_z - angle_seen_3*n_x
+            t228 = -t139*t227 + t150*t226
+            t229 = -angle_seen_1*m_y + angle_seen_2*m_x
+            t230 = -angle_seen_1*n_y + angle_seen_2*n_x
+            t231 = -t139*t230 + t150*t229
+            t232 = slips - 0.5
+            t233 = bent_size*bristle - dynamic_limit
+            t234 = 1/bent_size
+            t235 = 1/bristle
+            t236 = t234*t235
+            t237 = sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
+            t238 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+            t239 = t238*t238
+            t240 = -axis_1*t238 + force_1
+            t241 = -axis_2*t238 + force_2
+            t242 = -axis_3*t238 + force_3
+            t243 = t240*t240 + t241*t241 + t242*t242
+            t244 = axis_2*delta_force_2
+            t245 = axis_3*delta_force_3
+            t246 = delta_axis_1*force_1
+            t247 = delta_axis_2*force_2
+            t248 = delta_axis_3*force_3
+            t249 = 2*t238
+            t250 = 2*axis_1*delta_force_1 + 2*t244 + 2*t245 + 2*t246 + 2*t247 + 2*t248
+            vectors[0] = (t152*t155 + t152*t168 + t195*(-t139*(delta_n_x*t142 + delta_n_y*t145 +
+                delta_n_z*t148 + n_x*t182 + n_y*t188 + n_z*t194) - t149*t169 +
+                t150*(delta_m_x*t142 + delta_m_y*t145 + delta_m_z*t148 + m_x*t182 + m_y*t188 +
+                m_z*t194) + t151*t170))
+            vectors[1] = (t155*t204 + t168*t204 + t195*(-t139*(delta_n_x*t197 + delta_n_y*t199 +
+                delta_n_z*t201 + n_x*t209 + n_y*t211 + n_z*t213) + t150*(delta_m_x*t197 +
+                delta_m_y*t199 + delta_m_z*t201 + m_x*t209 + m_y*t211 + m_z*t213) - t169*t202 +
+                t170*t203))
+            vectors[2] = (t155*t219 + t168*t219 + t195*(-t139*(delta_n_x*t214 + delta_n_y*t215 +
+                delta_n_z*t216 + n_x*t220 + n_y*t221 + n_z*t222) + t150*(delta_m_x*t214 +
+                delta_m_y*t215 + delta_m_z*t216 + m_x*t220 + m_y*t221 + m_z*t222) - t169*t217 +
+                t170*t218))
+            vectors[3] = (t155*t225 + t168*t225 + t195*(-t139*(-angle_seen_2*delta_n_z +
                 angle_seen_3*delta_n_y - delta_angle_seen_2*n_z + delta_angle_seen_3*n_y) +
-                t127*(-angle_seen_2*delta_m_z + angle_seen_3*delta_m_y - delta_angle_seen_2*m_z +
-                delta_angle_seen_3*m_y) - t146*t201 + t147*t200))
-            vectors[4] = (t132*t205 + t145*t205 + t172*(-t116*(angle_seen_1*delta_n_z -
+                t150*(-angle_seen_2*delta_m_z + angle_seen_3*delta_m_y - delta_angle_seen_2*m_z +
+                delta_angle_seen_3*m_y) - t169*t224 + t170*t223))
+            vectors[4] = (t155*t228 + t168*t228 + t195*(-t139*(angle_seen_1*delta_n_z -
                 angle_seen_3*delta_n_x + delta_angle_seen_1*n_z - delta_angle_seen_3*n_x) +
-                t127*(angle_seen_1*delta_m_z - angle_seen_3*delta_m_x + delta_angle_seen_1*m_z -
-                delta_angle_seen_3*m_x) - t146*t204 + t147*t203))
-            vectors[5] = (t132*t208 + t145*t208 + t172*(-t116*(-angle_seen_1*delta_n_y +
+                t150*(angle_seen_1*delta_m_z - angle_seen_3*delta_m_x + delta_angle_seen_1*m_z -
+                delta_angle_seen_3*m_x) - t169*t227 + t170*t226))
+            vectors[5] = (t155*t231 + t168*t231 + t195*(-t139*(-angle_seen_1*delta_n_y +
                 angle_seen_2*delta_n_x - delta_angle_seen_1*n_y + delta_angle_seen_2*n_x) +
-                t127*(-angle_seen_1*delta_m_y + angle_seen_2*delta_m_x - delta_angle_seen_1*m_y +
-                delta_angle_seen_2*m_x) - t146*t207 + t147*t206))
+                t150*(-angle_seen_1*delta_m_y + angle_seen_2*delta_m_x - delta_angle_seen_1*m_y +
+                delta_angle_seen_2*m_x) - t169*t230 + t170*t229))
             vectors[6] = 0.0
             vectors[7] = 0.0
             vectors[8] = 0.0
             vectors[9] = 0.0
             vectors[10] = 0.0
-            kept[5] = -t116*t131*t147 + t127*t131*t146
+            kept[5] = -t139*t154*t170 + t150*t154*t169
             kept[6] = (delta_bent_size*z*(0 if speed > 0.0 else
-                (((-dynamic_limit*t212)/(bent_size*bent_size) if t210 > 0.0 else 0) if t209 > 0.0
+                (((-dynamic_limit*t235)/(bent_size*bent_size) if t233 > 0.0 else 0) if t232 > 0.0
                 else 0)) + delta_bristle*z*(0 if speed > 0.0 else
-                (((-dynamic_limit*t211)/(bristle*bristle) if t210 > 0.0 else 0) if t209 > 0.0 else
-                0)) + delta_dynamic_limit*z*(0 if speed > 0.0 else ((t213 if t210 > 0.0 else 0) if
-                t209 > 0.0 else 0)) + delta_z*(0.0 if speed > 0.0 else ((dynamic_limit*t213 if
-                t210 > 0.0 else 1.0) if t209 > 0.0 else 1.0)))
+                (((-dynamic_limit*t234)/(bristle*bristle) if t233 > 0.0 else 0) if t232 > 0.0 else
+                0)) + delta_dynamic_limit*z*(0 if speed > 0.0 else ((t236 if t233 > 0.0 else 0) if
+                t232 > 0.0 else 0)) + delta_z*(0.0 if speed > 0.0 else ((dynamic_limit*t236 if
+                t233 > 0.0 else 1.0) if t232 > 0.0 else 1.0)))
             kept[7] = 0.0
             kept[8] = 0.0
-            kept[9] = (delta_per_moment*t214 + delta_preload + per_moment*(delta_moment_1*moment_1
-                + delta_moment_2*moment_2)/t214 + (delta_force_1*force_1 + delta_force_2*force_2 +
-                delta_force_3*force_3)/sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 +
-                1e-300))
+            kept[9] = (delta_per_moment*t237 + delta_preload + per_moment*(delta_moment_1*moment_1
+                + delta_moment_2*moment_2)/t237 + ((0.5)*across*(t240*(-axis_1*t250 -
+                delta_axis_1*t249 + 2*delta_force_1) + t241*(-axis_2*t250 - delta_axis_2*t249 +
+                2*delta_force_2) + t242*(-axis_3*t250 - delta_axis_3*t249 + 2*delta_force_3)) +
+                (0.5)*along*t238*(2*axis_1*delta_force_1 + 2*t244 + 2*t245 + 2*t246 + 2*t247 +
+                2*t248) + (0.5)*delta_across*t243 + (0.5)*delta_along*t239)/sqrt(across*t243 +
+                along*t239 + 1e-300))
         if task == TRANSPOSED:
-            t22 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t23 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t24 = 1/(t22*t22 + t23*t23)
-            t25 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t26 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t27 = d_y*t25 - d_z*t26
-            t28 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t29 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t30 = d_y*t28 - d_z*t29
-            t31 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t32 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t33 = d_y*t31 - d_z*t32
-            t34 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t35 = -d_x*t25 + d_z*t34
-            t36 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t37 = -d_x*t28 + d_z*t36
-            t38 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t39 = -d_x*t31 + d_z*t38
-            t40 = d_x*t26 - d_y*t34
-            t41 = d_x*t29 - d_y*t36
-            t42 = d_x*t32 - d_y*t38
-            bar_friction = (vectors[0]*t24*(-t22*(n_x*t27 + n_y*t30 + n_z*t33) + t23*(m_x*t27 +
-                m_y*t30 + m_z*t33)) + vectors[1]*t24*(-t22*(n_x*t35 + n_y*t37 + n_z*t39) +
-                t23*(m_x*t35 + m_y*t37 + m_z*t39)) + vectors[2]*t24*(-t22*(n_x*t40 + n_y*t41 +
-                n_z*t42) + t23*(m_x*t40 + m_y*t41 + m_z*t42)) +
-                vectors[3]*t24*(-t22*(-angle_seen_2*n_z + angle_seen_3*n_y) +
-                t23*(-angle_seen_2*m_z + angle_seen_3*m_y)) +
-                vectors[4]*t24*(-t22*(angle_seen_1*n_z - angle_seen_3*n_x) + t23*(angle_seen_1*m_z
-                - angle_seen_3*m_x)) + vectors[5]*t24*(-t22*(-angle_seen_1*n_y + angle_seen_2*n_x)
-                + t23*(-angle_seen_1*m_y + angle_seen_2*m_x)))
+            t26 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t27 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t28 = 1/(t26*t26 + t27*t27)
+            t29 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t30 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t31 = d_y*t29 - d_z*t30
+            t32 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t33 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t34 = d_y*t32 - d_z*t33
+            t35 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t36 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t37 = d_y*t35 - d_z*t36
+            t38 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t39 = -d_x*t29 + d_z*t38
+            t40 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t41 = -d_x*t32 + d_z*t40
+            t42 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t43 = -d_x*t35 + d_z*t42
+            t44 = d_x*t30 - d_y*t38
+            t45 = d_x*t33 - d_y*t40
+            t46 = d_x*t36 - d_y*t42
+            bar_friction = (vectors[0]*t28*(-t26*(n_x*t31 + n_y*t34 + n_z*t37) + t27*(m_x*t31 +
+                m_y*t34 + m_z*t37)) + vectors[1]*t28*(-t26*(n_x*t39 + n_y*t41 + n_z*t43) +
+                t27*(m_x*t39 + m_y*t41 + m_z*t43)) + vectors[2]*t28*(-t26*(n_x*t44 + n_y*t45 +
+                n_z*t46) + t27*(m_x*t44 + m_y*t45 + m_z*t46)) +
+                vectors[3]*t28*(-t26*(-angle_seen_2*n_z + angle_seen_3*n_y) +
+                t27*(-angle_seen_2*m_z + angle_seen_3*m_y)) +
+                vectors[4]*t28*(-t26*(angle_seen_1*n_z - angle_seen_3*n_x) + t27*(angle_seen_1*m_z
+                - angle_seen_3*m_x)) + vectors[5]*t28*(-t26*(-angle_seen_1*n_y + angle_seen_2*n_x)
+                + t27*(-angle_seen_1*m_y + angle_seen_2*m_x)))
             bar_trial_size = (bar_friction*(0 if speed > 0.0 else
                 ((-dynamic_limit*trial)/(trial_size*trial_size) if -static_limit + trial_size >
                 0.0 else 0)))
             bar_drag = bar_friction*(slip_1 if speed > 0.0 else 0)
-            t43 = slip_speed*slip_speed
-            t44 = 1/speed
-            t45 = 4*t44
-            t46 = tanh(slip_speed*t45)
-            t47 = -coefficient + static
-            t48 = 0.75 + ((0.25)*t43)/(speed*speed)
-            t49 = (t44*t47)/(t48*t48)
+            t47 = slip_speed*slip_speed
+            t48 = 1/speed
+            t49 = 4*t48
+            t50 = tanh(slip_speed*t49)
+            t51 = -coefficient + static
+            t52 = 0.75 + ((0.25)*t47)/(speed*speed)
+            t53 = (t48*t51)/(t52*t52)
             bar_trial = (bar_friction*(0 if speed > 0.0 else (dynamic_limit/trial_size if
                 -static_limit + trial_size > 0.0 else 1)) + bar_trial_size*trial/sqrt(trial*trial
                 + 1e-300))
             bar_bent_size = (kept[6]*z*(0 if speed > 0.0 else
                 (((-dynamic_limit/bristle)/(bent_size*bent_size) if bent_size*bristle -
                 dynamic_limit > 0.0 else 0) if slips - 0.5 > 0.0 else 0)))
-            bar_slip_speed = (bar_drag*(-pressed*(coefficient*t46 + slip_speed*t49)/t43 +
-                pressed*(coefficient*t45*(1 - t46*t46) + t49 +
-                (-t43*t47)/(speed*speed*speed*t48*t48*t48))/slip_speed if speed > 0.0 else 0))
-            t50 = slips - 0.5
-            t51 = bent_size*bristle - dynamic_limit
-            t52 = 1/(bent_size*bristle)
-            bar_z = (kept[6]*(0.0 if speed > 0.0 else ((dynamic_limit*t52 if t51 > 0.0 else 1.0)
-                if t50 > 0.0 else 1.0)) + bar_bent_size*z/sqrt(z*z + 1e-300) + bar_trial*bristle)
-            bar_dynamic_limit = (kept[6]*z*(0 if speed > 0.0 else ((t52 if t51 > 0.0 else 0) if
-                t50 > 0.0 else 0)) + bar_friction*(0 if speed > 0.0 else (trial/trial_size if
+            bar_slip_speed = (bar_drag*(-pressed*(coefficient*t50 + slip_speed*t53)/t47 +
+                pressed*(coefficient*t49*(1 - t50*t50) + t53 +
+                (-t47*t51)/(speed*speed*speed*t52*t52*t52))/slip_speed if speed > 0.0 else 0))
+            t54 = slips - 0.5
+            t55 = bent_size*bristle - dynamic_limit
+            t56 = 1/(bent_size*bristle)
+            bar_z = (kept[6]*(0.0 if speed > 0.0 else ((dynamic_limit*t56 if t55 > 0.0 else 1.0)
+                if t54 > 0.0 else 1.0)) + bar_bent_size*z/sqrt(z*z + 1e-300) + bar_trial*bristle)
+            bar_dynamic_limit = (kept[6]*z*(0 if speed > 0.0 else ((t56 if t55 > 0.0 else 0) if
+                t54 > 0.0 else 0)) + bar_friction*(0 if speed > 0.0 else (trial/trial_size if
                 -static_limit + trial_size > 0.0 else 0)))
-            t53 = slip_speed/speed
-            t54 = speed*speed
-            bar_pressed = (bar_drag*((coefficient*tanh(4*t53) + (t53*(-coefficient +
-                static))/(((0.25)*slip_speed*slip_speed/t54 +
-                0.75)*((0.25)*slip_speed*slip_speed/t54 + 0.75)))/slip_speed if speed > 0.0 else
+            t57 = slip_speed/speed
+            t58 = speed*speed
+            bar_pressed = (bar_drag*((coefficient*tanh(4*t57) + (t57*(-coefficient +
+                static))/(((0.25)*slip_speed*slip_speed/t58 +
+                0.75)*((0.25)*slip_speed*slip_speed/t58 + 0.75)))/slip_speed if speed > 0.0 else
                 0) + bar_dynamic_limit*coefficient)
             bar_increment_1 = bar_z*kept_begun
             bar_slip_1 = (bar_friction*(drag if speed > 0.0 else 0) +
-                bar_slip_speed*slip_1/sqrt(slip_1*slip_1 + 1e-12*t54 + 1e-300) +
+                bar_slip_speed*slip_1/sqrt(slip_1*slip_1 + 1e-12*t58 + 1e-300) +
                 bar_trial*bristle_damping)
-            t55 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t56 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t57 = t55*t55 + t56*t56
-            t58 = 1/t57
-            t59 = m_x*t56
-            t60 = -t55*t58
-            t61 = n_x*t60 + t58*t59
-            t62 = 2*t55
-            t63 = 2*t56
-            t64 = -m_x*t62 - n_x*t63
-            t65 = 1/(t57*t57)
-            t66 = t65*(angle_along_m*t56 - angle_along_n*t55)
-            t67 = -angle_seen_2*n_z + angle_seen_3*n_y
-            t68 = -angle_seen_2*m_z + angle_seen_3*m_y
-            t69 = friction*t58
-            t70 = -t55*t67 + t56*t68
-            t71 = friction*t65
-            t72 = t64*t71
-            t73 = angle_seen_1*n_z - angle_seen_3*n_x
-            t74 = angle_seen_1*m_z - angle_seen_3*m_x
-            t75 = n_z*t55
-            t76 = m_z*t56
-            t77 = -t55*t73 + t56*t74
-            t78 = -angle_seen_1*n_y + angle_seen_2*n_x
-            t79 = -angle_seen_1*m_y + angle_seen_2*m_x
-            t80 = m_y*t56
-            t81 = -n_y*t55 + t80
-            t82 = -t55*t78 + t56*t79
-            t83 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t84 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t85 = d_y*t83 - d_z*t84
-            t86 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t87 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t88 = d_y*t86 - d_z*t87
-            t89 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t90 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t91 = d_y*t89 - d_z*t90
-            t92 = n_x*t85 + n_y*t88 + n_z*t91
-            t93 = m_x*t85 + m_y*t88 + m_z*t91
-            t94 = -t55*t92 + t56*t93
-            t95 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t96 = -d_x*t83 + d_z*t95
-            t97 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t98 = -d_x*t86 + d_z*t97
-            t99 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t100 = -d_x*t89 + d_z*t99
-            t101 = n_x*t96 + n_y*t98 + n_z*t100
-            t102 = m_x*t96 + m_y*t98 + m_z*t100
-            t103 = -t101*t55 + t102*t56
-            t104 = d_x*t84 - d_y*t95
-            t105 = d_x*t87 - d_y*t97
-            t106 = d_x*t90 - d_y*t99
-            t107 = n_x*t104 + n_y*t105 + n_z*t106
-            t108 = m_x*t104 + m_y*t105 + m_z*t106
-            t109 = -t107*t55 + t108*t56
-            t110 = n_y*t60 + t58*t80
-            t111 = -m_y*t62 - n_y*t63
-            t112 = t111*t71
-            t113 = -n_x*t55 + t59
-            t114 = n_z*t60 + t58*t76
-            t115 = -m_z*t62 - n_z*t63
-            t116 = t115*t71
-            bar_angle_seen_1 = (kept[5]*t61 + vectors[0]*(t69*(-m_x*t92 + n_x*t93) + t72*t94) +
-                vectors[1]*(t103*t72 + t69*(-m_x*t101 + n_x*t102)) + vectors[2]*(t109*t72 +
-                t69*(-m_x*t107 + n_x*t108)) + vectors[3]*(t69*(-m_x*t67 + n_x*t68) + t70*t72) +
-                vectors[4]*(t69*(-m_x*t73 + n_x*t74 - t75 + t76) + t72*t77) +
-                vectors[5]*(t69*(-m_x*t78 + n_x*t79 - t81) + t72*t82) + bar_increment_1*t61 +
-                bar_slip_1*(t58*(angle_along_m*n_x - angle_along_n*m_x) + t64*t66))
-            bar_angle_seen_2 = (kept[5]*t110 + vectors[0]*(t112*t94 + t69*(-m_y*t92 + n_y*t93)) +
-                vectors[1]*(t103*t112 + t69*(-m_y*t101 + n_y*t102)) + vectors[2]*(t109*t112 +
-                t69*(-m_y*t107 + n_y*t108)) + vectors[3]*(t112*t70 + t69*(-m_y*t67 + n_y*t68 + t75
-                - t76)) + vectors[4]*(t112*t77 + t69*(-m_y*t73 + n_y*t74)) + vectors[5]*(t112*t82
-                + t69*(-m_y*t78 + n_y*t79 + t113)) + bar_increment_1*t110 + bar_slip_1*(t111*t66 +
-                t58*(angle_along_m*n_y - angle_along_n*m_y)))
-            bar_angle_seen_3 = (kept[5]*t114 + vectors[0]*(t116*t94 + t69*(-m_z*t92 + n_z*t93)) +
-                vectors[1]*(t103*t116 + t69*(-m_z*t101 + n_z*t102)) + vectors[2]*(t109*t116 +
-                t69*(-m_z*t107 + n_z*t108)) + vectors[3]*(t116*t70 + t69*(-m_z*t67 + n_z*t68 +
-                t81)) + vectors[4]*(t116*t77 + t69*(-m_z*t73 + n_z*t74 - t113)) +
-                vectors[5]*(t116*t82 + t69*(-m_z*t78 + n_z*t79)) + bar_increment_1*t114 +
-                bar_slip_1*(t115*t66 + t58*(angle_along_m*n_z - angle_along_n*m_z)))
-            bar_angle_along_n = bar_slip_1*t60
-            bar_angle_along_m = bar_slip_1*t56*t58
-            t117 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t118 = d_y*t117
-            t119 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t120 = -t119
-            t121 = d_z*t120
-            t122 = t118 + t121
-            t123 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t124 = d_y*t123
-            t125 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t126 = -t125
-            t127 = d_z*t126
-            t128 = t124 + t127
-            t129 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t130 = d_y*t129
-            t131 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t132 = -t131
-            t133 = d_z*t132
-            t134 = t130 + t133
-            t135 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
-            t136 = d_x*t117
-            t137 = d_x*t123
-            t138 = d_x*t129
-            t139 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
-            t140 = friction/(t135*t135 + t139*t139)
-            t141 = vectors[2]*t140
-            t142 = d_x*t120
-            t143 = d_x*t126
-            t144 = d_x*t132
-            t145 = vectors[1]*t140
-            t146 = d_z*t117
-            t147 = d_y*t120
-            t148 = -t146 + t147
-            t149 = d_z*t123
-            t150 = d_y*t126
-            t151 = -t149 + t150
-            t152 = d_z*t129
-            t153 = d_y*t132
-            t154 = -t152 + t153
-            t155 = vectors[0]*t140
-            t156 = -Oma_x*d_z + Oma_z*d_x
-            t157 = Oma_x*d_y - Oma_y*d_x
-            t158 = -Omb_y*t134 + Omb_z*t128 + t117*t156 + t120*t157
-            t159 = Omb_x*t134 - Omb_z*t122 + t123*t156 + t126*t157
-            t160 = -Omb_x*t128 + Omb_y*t122 + t129*t156 + t132*t157
-            t161 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t162 = -t117
-            t163 = d_x*t162
-            t164 = d_z*t161 + t163
-            t165 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t166 = -t123
-            t167 = d_x*t166
-            t168 = d_z*t165 + t167
-            t169 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t170 = -t129
-            t171 = d_x*t170
-            t172 = d_z*t169 + t171
-            t173 = d_y*t161
-            t174 = d_y*t165
-            t175 = d_y*t169
-            t176 = d_y*t162
-            t177 = d_y*t166
-            t178 = d_y*t170
-            t179 = d_x*t161
-            t180 = d_z*t162 - t179
-            t181 = d_x*t165
-            t182 = d_z*t166 - t181
-            t183 = d_x*t169
-            t184 = d_z*t170 - t183
-            t185 = Oma_y*d_z - Oma_z*d_y
-            t186 = -Omb_y*t172 + Omb_z*t168 + t157*t161 + t162*t185
-            t187 = Omb_x*t172 - Omb_z*t164 + t157*t165 + t166*t185
-            t188 = -Omb_x*t168 + Omb_y*t164 + t157*t169 + t170*t185
-            t189 = d_x*t119
-            t190 = -t161
-            t191 = d_y*t190
-            t192 = t189 + t191
-            t193 = d_x*t125
-            t194 = -t165
-            t195 = d_y*t194
-            t196 = t193 + t195
-            t197 = d_x*t131
-            t198 = -t169
-            t199 = d_y*t198
-            t200 = t197 + t199
-            t201 = d_z*t119
-            t202 = d_z*t125
-            t203 = d_z*t131
-            t204 = d_z*t190
-            t205 = d_z*t194
-            t206 = d_z*t198
-            t207 = d_y*t119
-            t208 = d_x*t190
-            t209 = -t207 + t208
-            t210 = d_y*t125
-            t211 = d_x*t194
-            t212 = -t210 + t211
-            t213 = d_y*t131
-            t214 = d_x*t198
-            t215 = -t213 + t214
-            t216 = -Omb_y*t200 + Omb_z*t196 + t119*t185 + t156*t190
-            t217 = Omb_x*t200 - Omb_z*t192 + t125*t185 + t156*t194
-            t218 = -Omb_x*t196 + Omb_y*t192 + t131*t185 + t156*t198
-            t219 = t118 - t201
-            t220 = t124 - t202
-            t221 = t130 - t203
-            t222 = d_z*t161 - t136
-            t223 = d_z*t165 - t137
-            t224 = d_z*t169 - t138
-            t225 = -t173 + t189
-            t226 = -t174 + t193
-            t227 = -t175 + t197
-            t228 = t152 + t183 + t213
-            t229 = d_z*t166 + t150 + t211
-            t230 = -t127 + t177
-            t231 = d_z*t194 - t167
-            t232 = t143 - t195
-            t233 = -Omb_y*t229 + Omb_z*t228
-            t234 = Omb_x*t229 + t129*t157 + t131*t156 + t169*t185
-            t235 = -Omb_x*t228 + t126*t156 + t157*t166 + t185*t194
-            t236 = t146 + t179 + t207
-            t237 = d_z*t170 + t153 + t214
-            t238 = -t133 + t178
-            t239 = d_z*t198 - t171
-            t240 = t144 - t199
-            t241 = Omb_x*t236 - Omb_z*t237
-            t242 = Omb_y*t237 + t117*t157 + t119*t156 + t161*t185
-            t243 = -Omb_y*t236 + t132*t156 + t157*t170 + t185*t198
-            t244 = t149 + t181 + t210
-            t245 = d_z*t162 + t147 + t208
-            t246 = -t121 + t176
-            t247 = d_z*t190 - t163
-            t248 = t142 - t191
-            t249 = -Omb_x*t245 + Omb_y*t244
-            t250 = Omb_z*t245 + t123*t157 + t125*t156 + t165*t185
-            t251 = -Omb_z*t244 + t120*t156 + t157*t162 + t185*t190
-            t252 = -t244
-            t253 = -t228
-            t254 = -t236
-            t255 = 1/sqrt(force_1*force_1 + force_2*force_2 + force_3*force_3 + 1e-300)
-            t256 = kept[9]*t255
-            t257 = bar_pressed*radius
-            t258 = t255*t257
-            t259 = per_moment/sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
-            t260 = kept[9]*t259
-            t261 = t257*t259
-            vectors[11] = (bar_angle_along_m*(m_x*t158 + m_y*t159 + m_z*t160) +
-                bar_angle_along_n*(n_x*t158 + n_y*t159 + n_z*t160) + bar_angle_seen_1*t122 +
-                bar_angle_seen_2*t128 + bar_angle_seen_3*t134 + t141*(-t135*(n_x*t136 + n_y*t137 +
-                n_z*t138) + t139*(m_x*t136 + m_y*t137 + m_z*t138)) + t145*(-t135*(-n_x*t142 -
-                n_y*t143 - n_z*t144) + t139*(-m_x*t142 - m_y*t143 - m_z*t144)) +
-                t155*(-t135*(n_x*t148 + n_y*t151 + n_z*t154) + t139*(m_x*t148 + m_y*t151 +
-                m_z*t154)))
-            vectors[12] = (bar_angle_along_m*(m_x*t186 + m_y*t187 + m_z*t188) +
-                bar_angle_along_n*(n_x*t186 + n_y*t187 + n_z*t188) + bar_angle_seen_1*t164 +
-                bar_angle_seen_2*t168 + bar_angle_seen_3*t172 + t141*(-t135*(-n_x*t176 - n_y*t177
-                - n_z*t178) + t139*(-m_x*t176 - m_y*t177 - m_z*t178)) + t145*(-t135*(n_x*t180 +
-                n_y*t182 + n_z*t184) + t139*(m_x*t180 + m_y*t182 + m_z*t184)) +
-                t155*(-t135*(n_x*t173 + n_y*t174 + n_z*t175) + t139*(m_x*t173 + m_y*t174 +
-                m_z*t175)))
-            vectors[13] = (bar_angle_along_m*(m_x*t216 + m_y*t217 + m_z*t218) +
-                bar_angle_along_n*(n_x*t216 + n_y*t217 + n_z*t218) + bar_angle_seen_1*t192 +
-                bar_angle_seen_2*t196 + bar_angle_seen_3*t200 + t141*(-t135*(n_x*t209 + n_y*t212 +
-                n_z*t215) + t139*(m_x*t209 + m_y*t212 + m_z*t215)) + t145*(-t135*(n_x*t201 +
-                n_y*t202 + n_z*t203) + t139*(m_x*t201 + m_y*t202 + m_z*t203)) +
-                t155*(-t135*(-n_x*t204 - n_y*t205 - n_z*t206) + t139*(-m_x*t204 - m_y*t205 -
-                m_z*t206)))
-            vectors[22] = (bar_angle_along_m*(m_x*t219 + m_y*t220 + m_z*t221) +
-                bar_angle_along_n*(n_x*t219 + n_y*t220 + n_z*t221))
-            vectors[23] = (bar_angle_along_m*(m_x*t222 + m_y*t223 + m_z*t224) +
-                bar_angle_along_n*(n_x*t222 + n_y*t223 + n_z*t224))
-            vectors[24] = (bar_angle_along_m*(m_x*t225 + m_y*t226 + m_z*t227) +
-                bar_angle_along_n*(n_x*t225 + n_y*t226 + n_z*t227))
+            t59 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t60 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t61 = t59*t59 + t60*t60
+            t62 = 1/t61
+            t63 = m_x*t60
+            t64 = -t59*t62
+            t65 = n_x*t64 + t62*t63
+            t66 = 2*t59
+            t67 = 2*t60
+            t68 = -m_x*t66 - n_x*t67
+            t69 = 1/(t61*t61)
+            t70 = t69*(angle_along_m*t60 - angle_along_n*t59)
+            t71 = -angle_seen_2*n_z + angle_seen_3*n_y
+            t72 = -angle_seen_2*m_z + angle_seen_3*m_y
+            t73 = friction*t62
+            t74 = -t59*t71 + t60*t72
+            t75 = friction*t69
+            t76 = t68*t75
+            t77 = angle_seen_1*n_z - angle_seen_3*n_x
+            t78 = angle_seen_1*m_z - angle_seen_3*m_x
+            t79 = n_z*t59
+            t80 = m_z*t60
+            t81 = -t59*t77 + t60*t78
+            t82 = -angle_seen_1*n_y + angle_seen_2*n_x
+            t83 = -angle_seen_1*m_y + angle_seen_2*m_x
+            t84 = m_y*t60
+            t85 = -n_y*t59 + t84
+            t86 = -t59*t82 + t60*t83
+            t87 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t88 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t89 = d_y*t87 - d_z*t88
+            t90 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t91 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t92 = d_y*t90 - d_z*t91
+            t93 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t94 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t95 = d_y*t93 - d_z*t94
+            t96 = n_x*t89 + n_y*t92 + n_z*t95
+            t97 = m_x*t89 + m_y*t92 + m_z*t95
+            t98 = -t59*t96 + t60*t97
+            t99 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t100 = -d_x*t87 + d_z*t99
+            t101 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t102 = -d_x*t90 + d_z*t101
+            t103 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t104 = -d_x*t93 + d_z*t103
+            t105 = n_x*t100 + n_y*t102 + n_z*t104
+            t106 = m_x*t100 + m_y*t102 + m_z*t104
+            t107 = -t105*t59 + t106*t60
+            t108 = d_x*t88 - d_y*t99
+            t109 = d_x*t91 - d_y*t101
+            t110 = d_x*t94 - d_y*t103
+            t111 = n_x*t108 + n_y*t109 + n_z*t110
+            t112 = m_x*t108 + m_y*t109 + m_z*t110
+            t113 = -t111*t59 + t112*t60
+            t114 = n_y*t64 + t62*t84
+            t115 = -m_y*t66 - n_y*t67
+            t116 = t115*t75
+            t117 = -n_x*t59 + t63
+            t118 = n_z*t64 + t62*t80
+            t119 = -m_z*t66 - n_z*t67
+            t120 = t119*t75
+            t121 = axis_1*force_1
+            t122 = axis_2*force_2
+            t123 = axis_3*force_3
+            t124 = t121 + t122 + t123
+            t125 = along*t124
+            t126 = 2*force_1
+            t127 = -axis_2*t124 + force_2
+            t128 = axis_2*t127
+            t129 = -axis_3*t124 + force_3
+            t130 = axis_3*t129
+            t131 = 2*t122
+            t132 = 2*t123
+            t133 = -axis_1*t124 + force_1
+            t134 = (0.5)*across
+            t135 = force_1*t125 + t134*(-t126*t128 - t126*t130 + t133*(-4*t121 - t131 - t132))
+            t136 = 1/sqrt(across*(t127*t127 + t129*t129 + t133*t133) + along*t124*t124 + 1e-300)
+            t137 = kept[9]*t136
+            t138 = bar_pressed*radius*t136
+            t139 = 2*force_2
+            t140 = axis_1*t133
+            t141 = 2*t121
+            t142 = force_2*t125 + t134*(t127*(-4*t122 - t132 - t141) - t130*t139 - t139*t140)
+            t143 = 2*force_3
+            t144 = force_3*t125 + t134*(-t128*t143 + t129*(-4*t123 - t131 - t141) - t140*t143)
+            bar_angle_seen_1 = (kept[5]*t65 + vectors[0]*(t73*(-m_x*t96 + n_x*t97) + t76*t98) +
+                vectors[1]*(t107*t76 + t73*(-m_x*t105 + n_x*t106)) + vectors[2]*(t113*t76 +
+                t73*(-m_x*t111 + n_x*t112)) + vectors[3]*(t73*(-m_x*t71 + n_x*t72) + t74*t76) +
+                vectors[4]*(t73*(-m_x*t77 + n_x*t78 - t79 + t80) + t76*t81) +
+                vectors[5]*(t73*(-m_x*t82 + n_x*t83 - t85) + t76*t86) + bar_increment_1*t65 +
+                bar_slip_1*(t62*(angle_along_m*n_x - angle_along_n*m_x) + t68*t70))
+            bar_angle_seen_2 = (kept[5]*t114 + vectors[0]*(t116*t98 + t73*(-m_y*t96 + n_y*t97)) +
+                vectors[1]*(t107*t116 + t73*(-m_y*t105 + n_y*t106)) + vectors[2]*(t113*t116 +
+                t73*(-m_y*t111 + n_y*t112)) + vectors[3]*(t116*t74 + t73*(-m_y*t71 + n_y*t72 + t79
+                - t80)) + vectors[4]*(t116*t81 + t73*(-m_y*t77 + n_y*t78)) + vectors[5]*(t116*t86
+                + t73*(-m_y*t82 + n_y*t83 + t117)) + bar_increment_1*t114 + bar_slip_1*(t115*t70 +
+                t62*(angle_along_m*n_y - angle_along_n*m_y)))
+            bar_angle_seen_3 = (kept[5]*t118 + vectors[0]*(t120*t98 + t73*(-m_z*t96 + n_z*t97)) +
+                vectors[1]*(t107*t120 + t73*(-m_z*t105 + n_z*t106)) + vectors[2]*(t113*t120 +
+                t73*(-m_z*t111 + n_z*t112)) + vectors[3]*(t120*t74 + t73*(-m_z*t71 + n_z*t72 +
+                t85)) + vectors[4]*(t120*t81 + t73*(-m_z*t77 + n_z*t78 - t117)) +
+                vectors[5]*(t120*t86 + t73*(-m_z*t82 + n_z*t83)) + bar_increment_1*t118 +
+                bar_slip_1*(t119*t70 + t62*(angle_along_m*n_z - angle_along_n*m_z)))
+            bar_angle_along_n = bar_slip_1*t64
+            bar_angle_along_m = bar_slip_1*t60*t62
+            bar_axis_1 = t135*t137 + t135*t138
+            bar_axis_2 = t137*t142 + t138*t142
+            bar_axis_3 = t137*t144 + t138*t144
+            t145 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t146 = d_y*t145
+            t147 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t148 = -t147
+            t149 = d_z*t148
+            t150 = t146 + t149
+            t151 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t152 = d_y*t151
+            t153 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t154 = -t153
+            t155 = d_z*t154
+            t156 = t152 + t155
+            t157 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t158 = d_y*t157
+            t159 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t160 = -t159
+            t161 = d_z*t160
+            t162 = t158 + t161
+            t163 = angle_seen_1*m_x + angle_seen_2*m_y + angle_seen_3*m_z
+            t164 = d_x*t145
+            t165 = d_x*t151
+            t166 = d_x*t157
+            t167 = angle_seen_1*n_x + angle_seen_2*n_y + angle_seen_3*n_z
+            t168 = friction/(t163*t163 + t167*t167)
+            t169 = vectors[2]*t168
+            t170 = d_x*t148
+            t171 = d_x*t154
+            t172 = d_x*t160
+            t173 = vectors[1]*t168
+            t174 = d_z*t145
+            t175 = d_y*t148
+            t176 = -t174 + t175
+            t177 = d_z*t151
+            t178 = d_y*t154
+            t179 = -t177 + t178
+            t180 = d_z*t157
+            t181 = d_y*t160
+            t182 = -t180 + t181
+            t183 = vectors[0]*t168
+            t184 = -Oma_x*d_z + Oma_z*d_x
+            t185 = Oma_x*d_y - Oma_y*d_x
+            t186 = -Omb_y*t162 + Omb_z*t156 + t145*t184 + t148*t185
+            t187 = Omb_x*t162 - Omb_z*t150 + t151*t184 + t154*t185
+            t188 = -Omb_x*t156 + Omb_y*t150 + t157*t184 + t160*t185
+            t189 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t190 = -t145
+            t191 = d_x*t190
+            t192 = d_z*t189 + t191
+            t193 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t194 = -t151
+            t195 = d_x*t194
+            t196 = d_z*t193 + t195
+            t197 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t198 = -t157
+            t199 = d_x*t198
+            t200 = d_z*t197 + t199
+            t201 = d_y*t189
+            t202 = d_y*t193
+            t203 = d_y*t197
+            t204 = d_y*t190
+            t205 = d_y*t194
+            t206 = d_y*t198
+            t207 = d_x*t189
+            t208 = d_z*t190 - t207
+            t209 = d_x*t193
+            t210 = d_z*t194 - t209
+            t211 = d_x*t197
+            t212 = d_z*t198 - t211
+            t213 = Oma_y*d_z - Oma_z*d_y
+            t214 = -Omb_y*t200 + Omb_z*t196 + t185*t189 + t190*t213
+            t215 = Omb_x*t200 - Omb_z*t192 + t185*t193 + t194*t213
+            t216 = -Omb_x*t196 + Omb_y*t192 + t185*t197 + t198*t213
+            t217 = d_x*t147
+            t218 = -t189
+            t219 = d_y*t218
+            t220 = t217 + t219
+            t221 = d_x*t153
+            t222 = -t193
+            t223 = d_y*t222
+            t224 = t221 + t223
+            t225 = d_x*t159
+            t226 = -t197
+            t227 = d_y*t226
+            t228 = t225 + t227
+            t229 = d_z*t147
+            t230 = d_z*t153
+            t231 = d_z*t159
+            t232 = d_z*t218
+            t233 = d_z*t222
+            t234 = d_z*t226
+            t235 = d_y*t147
+            t236 = d_x*t218
+            t237 = -t235 + t236
+            t238 = d_y*t153
+            t239 = d_x*t222
+            t240 = -t238 + t239
+            t241 = d_y*t159
+            t242 = d_x*t226
+            t243 = -t241 + t242
+            t244 = -Omb_y*t228 + Omb_z*t224 + t147*t213 + t184*t218
+            t245 = Omb_x*t228 - Omb_z*t220 + t153*t213 + t184*t222
+            t246 = -Omb_x*t224 + Omb_y*t220 + t159*t213 + t184*t226
+            t247 = t146 - t229
+            t248 = t152 - t230
+            t249 = t158 - t231
+            t250 = d_z*t189 - t164
+            t251 = d_z*t193 - t165
+            t252 = d_z*t197 - t166
+            t253 = -t201 + t217
+            t254 = -t202 + t221
+            t255 = -t203 + t225
+            t256 = -m_x*n_y + m_y*n_x
+            t257 = m_x*n_z - m_z*n_x
+            t258 = t180 + t211 + t241
+            t259 = d_z*t194 + t178 + t239
+            t260 = -t155 + t205
+            t261 = d_z*t222 - t195
+            t262 = t171 - t223
+            t263 = -Omb_y*t259 + Omb_z*t258
+            t264 = Omb_x*t259 + t157*t185 + t159*t184 + t197*t213
+            t265 = -Omb_x*t258 + t154*t184 + t185*t194 + t213*t222
+            t266 = -m_y*n_z + m_z*n_y
+            t267 = t174 + t207 + t235
+            t268 = d_z*t198 + t181 + t242
+            t269 = -t161 + t206
+            t270 = d_z*t226 - t199
+            t271 = t172 - t227
+            t272 = Omb_x*t267 - Omb_z*t268
+            t273 = Omb_y*t268 + t145*t185 + t147*t184 + t189*t213
+            t274 = -Omb_y*t267 + t160*t184 + t185*t198 + t213*t226
+            t275 = t177 + t209 + t238
+            t276 = d_z*t190 + t175 + t236
+            t277 = -t149 + t204
+            t278 = d_z*t218 - t191
+            t279 = t170 - t219
+            t280 = -Omb_x*t276 + Omb_y*t275
+            t281 = Omb_z*t276 + t151*t185 + t153*t184 + t193*t213
+            t282 = -Omb_z*t275 + t148*t184 + t185*t190 + t213*t218
+            t283 = -t275
+            t284 = -t258
+            t285 = -t267
+            t286 = axis_1*force_1 + axis_2*force_2 + axis_3*force_3
+            t287 = axis_1*t286
+            t288 = axis_2*t286
+            t289 = force_2 - t288
+            t290 = 2*axis_1
+            t291 = axis_2*t290
+            t292 = axis_3*t286
+            t293 = force_3 - t292
+            t294 = axis_3*t293
+            t295 = force_1 - t287
+            t296 = (0.5)*across
+            t297 = along*t287 + t296*(-t289*t291 - t290*t294 + t295*(2 - 2*axis_1*axis_1))
+            t298 = 1/sqrt(across*(t289*t289 + t293*t293 + t295*t295) + along*t286*t286 + 1e-300)
+            t299 = kept[9]*t298
+            t300 = bar_pressed*radius
+            t301 = t298*t300
+            t302 = 2*axis_2
+            t303 = along*t288 + t296*(t289*(2 - 2*axis_2*axis_2) - t291*t295 - t294*t302)
+            t304 = (along*t292 + t296*(-axis_3*t289*t302 - axis_3*t290*t295 + t293*(2 -
+                2*axis_3*axis_3)))
+            t305 = per_moment/sqrt(moment_1*moment_1 + moment_2*moment_2 + 1e-300)
+            t306 = kept[9]*t305
+            t307 = t300*t305
+            vectors[11] = (bar_angle_along_m*(m_x*t186 + m_y*t187 + m_z*t188) +
+                bar_angle_along_n*(n_x*t186 + n_y*t187 + n_z*t188) + bar_angle_seen_1*t150 +
+                bar_angle_seen_2*t156 + bar_angle_seen_3*t162 + t169*(-t163*(n_x*t164 + n_y*t165 +
+                n_z*t166) + t167*(m_x*t164 + m_y*t165 + m_z*t166)) + t173*(-t163*(-n_x*t170 -
+                n_y*t171 - n_z*t172) + t167*(-m_x*t170 - m_y*t171 - m_z*t172)) +
+                t183*(-t163*(n_x*t176 + n_y*t179 + n_z*t182) + t167*(m_x*t176 + m_y*t179 +
+                m_z*t182)))
+            vectors[12] = (bar_angle_along_m*(m_x*t214 + m_y*t215 + m_z*t216) +
+                bar_angle_along_n*(n_x*t214 + n_y*t215 + n_z*t216) + bar_angle_seen_1*t192 +
+                bar_angle_seen_2*t196 + bar_angle_seen_3*t200 + t169*(-t163*(-n_x*t204 - n_y*t205
+                - n_z*t206) + t167*(-m_x*t204 - m_y*t205 - m_z*t206)) + t173*(-t163*(n_x*t208 +
+                n_y*t210 + n_z*t212) + t167*(m_x*t208 + m_y*t210 + m_z*t212)) +
+                t183*(-t163*(n_x*t201 + n_y*t202 + n_z*t203) + t167*(m_x*t201 + m_y*t202 +
+                m_z*t203)))
+            vectors[13] = (bar_angle_along_m*(m_x*t244 + m_y*t245 + m_z*t246) +
+                bar_angle_along_n*(n_x*t244 + n_y*t245 + n_z*t246) + bar_angle_seen_1*t220 +
+                bar_angle_seen_2*t224 + bar_angle_seen_3*t228 + t169*(-t163*(n_x*t237 + n_y*t240 +
+                n_z*t243) + t167*(m_x*t237 + m_y*t240 + m_z*t243)) + t173*(-t163*(n_x*t229 +
+                n_y*t230 + n_z*t231) + t167*(m_x*t229 + m_y*t230 + m_z*t231)) +
+                t183*(-t163*(-n_x*t232 - n_y*t233 - n_z*t234) + t167*(-m_x*t232 - m_y*t233 -
+                m_z*t234)))
+            vectors[22] = (bar_angle_along_m*(m_x*t247 + m_y*t248 + m_z*t249) +
+                bar_angle_along_n*(n_x*t247 + n_y*t248 + n_z*t249))
+            vectors[23] = (bar_angle_along_m*(m_x*t250 + m_y*t251 + m_z*t252) +
+                bar_angle_along_n*(n_x*t250 + n_y*t251 + n_z*t252))
+            vectors[24] = (bar_angle_along_m*(m_x*t253 + m_y*t254 + m_z*t255) +
+                bar_angle_along_n*(n_x*t253 + n_y*t254 + n_z*t255))
             kept[10] = 0.0
             kept[11] = 0.0
             kept[12] = 0.0
-            vectors[14] = (bar_angle_along_m*(m_x*t233 + m_y*t234 + m_z*t235) +
-                bar_angle_along_n*(n_x*t233 + n_y*t234 + n_z*t235) + bar_angle_seen_2*t228 +
-                bar_angle_seen_3*t229 + t141*(-t135*(n_y*t227 + n_z*t232) + t139*(m_y*t227 +
-                m_z*t232)) + t145*(-t135*(n_y*t224 + n_z*t231) + t139*(m_y*t224 + m_z*t231)) +
-                t155*(-t135*(n_y*t221 + n_z*t230) + t139*(m_y*t221 + m_z*t230)))
-            vectors[15] = (bar_angle_along_m*(m_x*t243 + m_y*t241 + m_z*t242) +
-                bar_angle_along_n*(n_x*t243 + n_y*t241 + n_z*t242) + bar_angle_seen_1*t237 +
-                bar_angle_seen_3*t236 + t141*(-t135*(n_x*t240 + n_z*t225) + t139*(m_x*t240 +
-                m_z*t225)) + t145*(-t135*(n_x*t239 + n_z*t222) + t139*(m_x*t239 + m_z*t222)) +
-                t155*(-t135*(n_x*t238 + n_z*t219) + t139*(m_x*t238 + m_z*t219)))
-            vectors[16] = (bar_angle_along_m*(m_x*t250 + m_y*t251 + m_z*t249) +
-                bar_angle_along_n*(n_x*t250 + n_y*t251 + n_z*t249) + bar_angle_seen_1*t244 +
-                bar_angle_seen_2*t245 + t141*(-t135*(n_x*t226 + n_y*t248) + t139*(m_x*t226 +
-                m_y*t248)) + t145*(-t135*(n_x*t223 + n_y*t247) + t139*(m_x*t223 + m_y*t247)) +
-                t155*(-t135*(n_x*t220 + n_y*t246) + t139*(m_x*t220 + m_y*t246)))
-            vectors[25] = (bar_angle_along_m*(m_y*t228 + m_z*t252) + bar_angle_along_n*(n_y*t228 +
-                n_z*t252))
-            vectors[26] = (bar_angle_along_m*(m_x*t253 + m_z*t236) + bar_angle_along_n*(n_x*t253 +
-                n_z*t236))
-            vectors[27] = (bar_angle_along_m*(m_x*t244 + m_y*t254) + bar_angle_along_n*(n_x*t244 +
-                n_y*t254))
+            vectors[14] = (bar_angle_along_m*(m_x*t263 + m_y*t264 + m_z*t265) +
+                bar_angle_along_n*(n_x*t263 + n_y*t264 + n_z*t265) + bar_angle_seen_2*t258 +
+                bar_angle_seen_3*t259 + bar_axis_1*(-Rb_xy*t256 + Rb_xz*t257) +
+                bar_axis_2*(-Rb_yy*t256 + Rb_yz*t257) + bar_axis_3*(-Rb_zy*t256 + Rb_zz*t257) +
+                t169*(-t163*(n_y*t255 + n_z*t262) + t167*(m_y*t255 + m_z*t262)) +
+                t173*(-t163*(n_y*t252 + n_z*t261) + t167*(m_y*t252 + m_z*t261)) +
+                t183*(-t163*(n_y*t249 + n_z*t260) + t167*(m_y*t249 + m_z*t260)))
+            vectors[15] = (bar_angle_along_m*(m_x*t274 + m_y*t272 + m_z*t273) +
+                bar_angle_along_n*(n_x*t274 + n_y*t272 + n_z*t273) + bar_angle_seen_1*t268 +
+                bar_angle_seen_3*t267 + bar_axis_1*(Rb_xx*t256 - Rb_xz*t266) +
+                bar_axis_2*(Rb_yx*t256 - Rb_yz*t266) + bar_axis_3*(Rb_zx*t256 - Rb_zz*t266) +
+                t169*(-t163*(n_x*t271 + n_z*t253) + t167*(m_x*t271 + m_z*t253)) +
+                t173*(-t163*(n_x*t270 + n_z*t250) + t167*(m_x*t270 + m_z*t250)) +
+                t183*(-t163*(n_x*t269 + n_z*t247) + t167*(m_x*t269 + m_z*t247)))
+            vectors[16] = (bar_angle_along_m*(m_x*t281 + m_y*t282 + m_z*t280) +
+                bar_angle_along_n*(n_x*t281 + n_y*t282 + n_z*t280) + bar_angle_seen_1*t275 +
+                bar_angle_seen_2*t276 + bar_axis_1*(-Rb_xx*t257 + Rb_xy*t266) +
+                bar_axis_2*(-Rb_yx*t257 + Rb_yy*t266) + bar_axis_3*(-Rb_zx*t257 + Rb_zy*t266) +
+                t169*(-t163*(n_x*t254 + n_y*t279) + t167*(m_x*t254 + m_y*t279)) +
+                t173*(-t163*(n_x*t251 + n_y*t278) + t167*(m_x*t251 + m_y*t278)) +
+                t183*(-t163*(n_x*t248 + n_y*t277) + t167*(m_x*t248 + m_y*t277)))
+            vectors[25] = (bar_angle_along_m*(m_y*t258 + m_z*t283) + bar_angle_along_n*(n_y*t258 +
+                n_z*t283))
+            vectors[26] = (bar_angle_along_m*(m_x*t284 + m_z*t267) + bar_angle_along_n*(n_x*t284 +
+                n_z*t267))
+            vectors[27] = (bar_angle_along_m*(m_x*t275 + m_y*t285) + bar_angle_along_n*(n_x*t275 +
+                n_y*t285))
             kept[13] = 0.0
             kept[14] = 0.0
             kept[15] = 0.0
-            vectors[17] = force_1*t256 + force_1*t258
-            vectors[18] = force_2*t256 + force_2*t258
-            vectors[19] = force_3*t256 + force_3*t258
-            vectors[20] = moment_1*t260 + moment_1*t261
-            vectors[21] = moment_2*t260 + moment_2*t261
+            vectors[17] = t297*t299 + t297*t301
+            vectors[18] = t299*t303 + t301*t303
+            vectors[19] = t299*t304 + t301*t304
+            vectors[20] = moment_1*t306 + moment_1*t307
+            vectors[21] = moment_2*t306 + moment_2*t307
             kept[0] = -bar_increment_1
             kept[1] = bar_z
             kept[2] = 0.0

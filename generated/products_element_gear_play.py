@@ -208,7 +208,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         speed_beyond = (side*(-ratio*(angle_2_along_m*t42 - angle_2_along_n*t43)/(t42*t42 +
             t43*t43) + (angle_1_along_m*t40 - angle_1_along_n*t41)/(t40*t40 + t41*t41)))
         touches = 1.0 if beyond > 0.0 else 0.0
-        depth = beyond if beyond > 0.0 else 1e-300
+        depth = (beyond if beyond > 0.0 else 1e-300) if -lower + upper > 0.0 else beyond + 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
         push = elastic*factor if factor > 0.0 else 0.0
@@ -547,7 +547,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 delta_angle_1_along_n*t165)/t167 + ((angle_1_along_m*t166 -
                 angle_1_along_n*t165)*(-t165*(2*t174 + 2*t175 + 2*t176 + 2*t177 + 2*t178 + 2*t179)
                 - t166*(2*t168 + 2*t169 + 2*t170 + 2*t171 + 2*t172 + 2*t173)))/(t167*t167)))
-            delta_depth = delta_beyond*(1 if beyond > 0.0 else 0)
+            delta_depth = delta_beyond*((1 if beyond > 0.0 else 0) if -lower + upper > 0.0 else 1)
             t192 = depth**exponent
             delta_elastic = (delta_stiffness*t192 + stiffness*t192*(delta_depth*exponent/depth +
                 delta_exponent*log(depth)))
@@ -896,7 +896,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bar_speed_beyond = (kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t88 > 0.0 else 0)
                 if t90 > 0.0 else 0) if -slow + (t89 if t90 > 0.0 else kept_impact) > 0.0 else 0)
                 if touches - 0.5 > 0.0 else 0) + bar_factor*damping)
-            bar_beyond = kept[10] + bar_depth*(1 if beyond > 0.0 else 0)
+            bar_beyond = (kept[10] + bar_depth*((1 if beyond > 0.0 else 0) if -lower + upper > 0.0
+                else 1))
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             t91 = angle_1_seen_1*m1_x + angle_1_seen_2*m1_y + angle_1_seen_3*m1_z
             t92 = angle_1_seen_1*n1_x + angle_1_seen_2*n1_y + angle_1_seen_3*n1_z

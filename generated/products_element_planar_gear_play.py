@@ -88,7 +88,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         beyond = -t1 - upper if t0 > 0.0 else lower + t1
         speed_beyond = side*(angle_1_rate - angle_2_rate*ratio)
         touches = 1.0 if beyond > 0.0 else 0.0
-        depth = beyond if beyond > 0.0 else 1e-300
+        depth = (beyond if beyond > 0.0 else 1e-300) if -lower + upper > 0.0 else beyond + 1e-300
         elastic = depth**exponent*stiffness
         factor = damping*speed_beyond + 1
         push = elastic*factor if factor > 0.0 else 0.0
@@ -137,7 +137,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 0) + delta_value*(1 if t2 > 0.0 else -1))
             delta_speed_beyond = (side*(-angle_2_rate*delta_ratio + delta_angle_1_rate -
                 delta_angle_2_rate*ratio))
-            delta_depth = delta_beyond*(1 if beyond > 0.0 else 0)
+            delta_depth = delta_beyond*((1 if beyond > 0.0 else 0) if -lower + upper > 0.0 else 1)
             t3 = depth**exponent
             delta_elastic = (delta_stiffness*t3 + stiffness*t3*(delta_depth*exponent/depth +
                 delta_exponent*log(depth)))
@@ -181,7 +181,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             bar_speed_beyond = (kept[9]*(((((1 if speed_beyond > 0.0 else -1) if t5 > 0.0 else 0)
                 if t7 > 0.0 else 0) if -slow + (t6 if t7 > 0.0 else kept_impact) > 0.0 else 0) if
                 touches - 0.5 > 0.0 else 0) + bar_factor*damping)
-            bar_beyond = kept[10] + bar_depth*(1 if beyond > 0.0 else 0)
+            bar_beyond = (kept[10] + bar_depth*((1 if beyond > 0.0 else 0) if -lower + upper > 0.0
+                else 1))
             bar_value = bar_beyond*(1 if -lower - upper + 2*value > 0.0 else -1)
             t8 = bar_speed_beyond*side
             bar_angle_1 = kept[6] + bar_value

@@ -2,11 +2,10 @@
 
 from sebody.assembly.numbering import stretch
 from sebody.basics.errors import InputError
-from sebody.model.parts import SLIDES, TURNS, DofBlock, Joint, Node
+from sebody.model.parts import SLIDES, TURNS, DofBlock, Joint
 from sebody.quantities.algebra import back, dot, minus, spun, times
 from sebody.quantities.expressions import Number, angle
 from sebody.quantities.numbers import Numbers, Parts
-
 
 
 def joints(of: Parts) -> dict[str, Joint]:

@@ -39,6 +39,7 @@ from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
+from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 from sebody.runs.variable_steps import FIRST_STEP, begin_steps, natural_step
 
@@ -156,8 +157,8 @@ class Simulation:
     def _judge_teeth(self) -> None:
         """Say once what teeth do to vibrations whose stiffness was not given."""
         if self._unjudged:
-            from sebody.runs.teeth import teeth_remarks  # here: it needs a simulation
-            for key, message in teeth_remarks(self).items():
+            gears = Gears(self.model, self.numbering, self.system, self.state)
+            for key, message in teeth_remarks(gears).items():
                 self.watch.say(key, message)
         self._unjudged = False
 

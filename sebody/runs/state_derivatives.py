@@ -4,12 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
-from sebody.assembly.evaluation import matrix
 from sebody.engine.evaluate import to_body_axes
-from sebody.engine.state import EVALUATED
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin, motion, of_levers, summed
 from sebody.runs.simulation import Simulation
+from sebody.runs.tangents import tangent
 
 
 def derivative(run: Simulation | Result, mass: float, damping: float,
@@ -19,11 +18,7 @@ def derivative(run: Simulation | Result, mass: float, damping: float,
     Weights are those of the derivatives with respect to accelerations, velocities, and positions
     and rotations. Constraints go with the last.
     """
-    system, state = run.arrays_of_loop
-    state.control.wanted = EVALUATED     # a run that goes on needs its own matrix again
-    state.T[:] = np.tile(np.eye(3).ravel(), len(state.T) // 9)
-    return matrix(system, state, "the state", mass=mass, damping=damping,
-                  stiffness=stiffness, constraint=stiffness)
+    return tangent(*run.arrays_of_loop, mass, damping, stiffness)
 
 
 def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]:

@@ -7,18 +7,22 @@ the meshes; their compliance adds to the others', which to first order lowers it
     w / sqrt(1 + sum mu^2 / (k w^2))        (x of unit mass)
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh, null_space
 
+from sebody.assembly.numbering import Numbering
 from sebody.engine.evaluate import to_body_axes
+from sebody.engine.state import State
+from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
+from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
-from sebody.results.contact_quantities import without_play
-from sebody.results.result import Result
+from sebody.results.contact_states import without_play
 from sebody.runs.directions import of_mesh
-from sebody.runs.simulation import Simulation
-from sebody.runs.state_derivatives import derivative
+from sebody.runs.tangents import tangent
 from sebody.runs.tuning import ElementConstants
 
 ROUNDED = 1e-12         # depth of teeth that is rounding of angles [rad]
@@ -28,7 +32,16 @@ LOWEST = 3              # vibrations that are looked at
 STILL = 1e-9            # square of a frequency, of the highest one, of a motion without stiffness
 
 
-def teeth_remarks(run: Simulation | Result, M: NDArray | None = None, K: NDArray | None = None
+class Gears(NamedTuple):
+    """A model with gears in a state of a run."""
+
+    model: Mechanism
+    numbering: Numbering
+    system: System
+    state: State
+
+
+def teeth_remarks(run: Gears, M: NDArray | None = None, K: NDArray | None = None
                   ) -> dict[str, str]:
     """Warnings by key of gears in a state, with masses and stiffness of all unknowns."""
     gears = [load for load in run.model.loads if load.kind.endswith("gear_play")]
@@ -37,7 +50,7 @@ def teeth_remarks(run: Simulation | Result, M: NDArray | None = None, K: NDArray
     if not tuned or run.numbering.free > MOST:
         return remarks
     if M is None or K is None:
-        M, K = (derivative(run, *weights).toarray()
+        M, K = (tangent(run.system, run.state, *weights).toarray()
                 for weights in ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)))
     names = ", ".join(repr(one.name) for one in tuned)
     omega, lowered = _softened(run, tuned, M, K)
@@ -50,7 +63,7 @@ def teeth_remarks(run: Simulation | Result, M: NDArray | None = None, K: NDArray
     return remarks
 
 
-def _loose(run: Simulation | Result, gear: Element) -> str:
+def _loose(run: Gears, gear: Element) -> str:
     """What is said of teeth that carry no load and have no stiffness without."""
     memory = dict(zip(element_kernel(gear.kind).MEMORY,
                       run.state.frames[run.numbering.memories[gear]], strict=True))
@@ -61,7 +74,7 @@ def _loose(run: Simulation | Result, gear: Element) -> str:
             "of two separate shafts; load the gear, or give exponent=1")
 
 
-def _softened(run: Simulation | Result, gears: list[Element], M: NDArray, K: NDArray
+def _softened(run: Gears, gears: list[Element], M: NDArray, K: NDArray
               ) -> tuple[float, float]:
     """The lowest frequency that teeth of finite stiffness lower most, and by which share of it."""
     n = len(K)

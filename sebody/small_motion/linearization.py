@@ -23,7 +23,7 @@ from sebody.runs.limits.watch import Watch
 from sebody.runs.rotating_frame import Spin, fastest_spin
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative, turning
-from sebody.runs.teeth import teeth_remarks
+from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.small_motion import mode_tables
 from sebody.small_motion.eigenvalues import NEGLIGIBLE, eigenvalues, undamped
 from sebody.small_motion.pressed_friction import without_multipliers
@@ -49,7 +49,8 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
     matrices = (turning(run, spin) if spin.rotates else
                 tuple(derivative(run, *weights) for weights in np.eye(3)))
     M, C, K = (A.toarray() for A in matrices)
-    for key, message in teeth_remarks(run, M, K).items():
+    gears = Gears(run.model, run.numbering, *run.arrays_of_loop)
+    for key, message in teeth_remarks(gears, M, K).items():
         watch.say(key, message)
     if not all(np.isfinite(A).all() for A in (K, C, M)):
         did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
