@@ -201,7 +201,7 @@ def test_driven_slide():
     car = model.node("car", (1.0, 0.0))
     model.rigid_body("car", car, 0.5, 0.1)
     model.prismatic(rail, (1.0, 0.0), to=car)
-    model.drive_slide(rail, DRIVE, (1.0, 0.0), to=car)
+    model.drive_slide(rail, DRIVE, (-1.0, 0.0), to=car)     # of the rail against the car
     model.initial_velocity(rail, angular=1.5)
     result = simulate(model, 5e-4, 1.0, generalized_alpha(0.9, 1e-11))
     way = np.linalg.norm(result["car.position"], axis=1)

@@ -54,7 +54,7 @@ def driven(model: Model) -> None:
     model.revolute(wheel, Z)
     model.drive_angle(wheel, harmonic(0.5, 6.0), axis=-Z, name="motor")
     model.cylindrical(wheel, TURN @ (1, 0, 0), to=rider, name="rail")
-    model.drive_slide(wheel, harmonic(3.0, 4.0), TURN @ (1, 0, 0), to=rider, name="pusher")
+    model.drive_slide(wheel, harmonic(3.0, 4.0), TURN @ (-1, 0, 0), to=rider, name="pusher")
     shaken = model.node("shaken", at(120, 0, 0), keeps="translation")
     model.point_mass("shaken", shaken, 1.0)
     model.move(shaken, TURN @ (0, 1, 0), harmonic(2.0, 5.0), name="shaker")

@@ -150,7 +150,7 @@ def test_the_pointer_of_an_angle_meets_its_limits(result, drawn):
 
 def test_plates_are_at_the_limits_of_a_way(result, drawn):
     plates, mark = of(drawn, "stop of way", "limits"), of(drawn, "stop of way", "pointer")
-    axis = np.array([1.0, 0.3, 0.2]) / np.sqrt(1.13)
+    axis = -np.array([1.0, 0.3, 0.2]) / np.sqrt(1.13)       # of the ground, seen from the cart
     for frame, state in enumerate(drawn.states):
         corners = vertices_of(plates, drawn.nodes, frame).reshape(2, 4, 3)
         at = vertices_of(mark, drawn.nodes, frame).mean(axis=0)

@@ -272,7 +272,7 @@ def test_thrust_of_drives():
             rail = model.node("rail", (0.0, 0, 0))
             model.fix(rail)
             model.prismatic(rail, ACROSS, to="car", name="guide")
-            model.drive_slide(rail, motion, ACROSS, to="car", name="winch")
+            model.drive_slide(rail, motion, -ACROSS, to="car", name="winch")
         result = simulate(model, 2e-3, 0.6, FINE)
         expected = 3.0 * (angle_second(result.t) - GRAVITY @ ACROSS)
         later = result.t > 0.4
