@@ -233,7 +233,8 @@ LOADS = {
         "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
         "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),
     "torsion_spring": Right(Model.torsion_spring, {"node": "a", "stiffness": 1.0, "to": "c"}, {
-        "stiffness": not_negative("torsion spring: stiffness"), "axis": given(axis("torsion spring")),
+        "stiffness": not_negative("torsion spring: stiffness"),
+        "axis": given(axis("torsion spring")),
         "rest": are("torsion spring at 'a': rest", *NO_NUMBER), "to": [itself, lacks_turn]}),
     "bushing": Right(Model.bushing, {"node": "a", "to": "c", "stiffness": 1.0}, {
         **{name: [pair for pair in are(
