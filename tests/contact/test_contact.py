@@ -150,8 +150,7 @@ def test_stops_of_ways_and_distances():
         law = {"stiffness": 1e5, "restitution": 0.6, "at_speed": 1.0, "name": "end"}
         if kind == "slide":
             model.prismatic("bead", (-1.0, 0.0, 0.0), name="rail")
-            # the joint's axis is that of the bead, along which the ground moves the other way
-            model.stop("rail", lower=-0.4, upper=0.3, **law)
+            model.stop("rail", lower=-0.3, upper=0.4, **law)     # against the axis
         else:
             model.fix(model.node("post", (-1.0, 0.0, 0.0), keeps="translation"), "position")
             model.stop(("post", "bead"), upper=1.3, **law)

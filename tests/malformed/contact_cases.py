@@ -37,7 +37,8 @@ CASES = {
         "reaction": are(f"{FRICTION}: reaction", *NO_FLAG, also=": give True or False"),
         "bristle": unless_none(positive(f"{FRICTION}: bristle")),
         "slip": unless_none(positive(f"{FRICTION}: slip")),
-        "damping": not_negative(f"{FRICTION}: damping"),
+        "damping": unless_none(not_negative(f"{FRICTION}: damping")),
+        "takes": [("across", "takes 'across' is unknown: use 'radial', 'axial' or 'whole'")],
         "speed": not_negative(f"{FRICTION}: speed")}),
     "stop": Right(Model.stop, {"of": "pin", "lower": -0.3, "upper": 0.5, "stiffness": 1e3}, {
         "of": [*NO_JOINT, (("p", "q", "a"), "give a joint or two nodes")],
@@ -60,5 +61,7 @@ CASES = {
             "on": are(f"{CONTACT}: on", None, "plane", 3.0, also=": give a sebody.plane"),
             "radius": not_negative(f"{CONTACT}: radius"),
             "friction": not_negative(f"{CONTACT}: friction"),
+            **{name: [(0.5, f"{CONTACT} has {name}= and no friction: give friction=, the")]
+               for name in ("static", "bristle", "damping", "speed")},
             **impact(CONTACT)}),
 }

@@ -67,6 +67,11 @@ itself = ("a", "node 'a' is joined to itself: give two nodes")
 apart = ("b", "nodes 'a' and 'b' do not coincide: give both the same point")
 
 
+def given(cases):
+    """Cases without that of an argument that may be left out."""
+    return [(value, said) for value, said in cases if value is not None]
+
+
 def axis(what: str) -> list:
     """Wrong axes of a joint at node a."""
     return [*vectors(f"axis of the {what} at 'a'", 3),
@@ -264,7 +269,8 @@ LOADS = {
         "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
         "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),
     "torsion_spring": Right(Model.torsion_spring, {"node": "a", "stiffness": 1.0, "to": "c"}, {
-        "stiffness": not_negative("torsion spring: stiffness"), "axis": axis("torsion spring"),
+        "stiffness": not_negative("torsion spring: stiffness"),
+        "axis": given(axis("torsion spring")),
         "rest": are("torsion spring at 'a': rest", *NO_NUMBER), "to": [itself, lacks_turn]}),
     "bushing": Right(Model.bushing, {"node": "a", "to": "c", "stiffness": 1.0}, {
         **{name: [pair for pair in are(
@@ -273,11 +279,12 @@ LOADS = {
            for name in ("stiffness", "damping", "turning_stiffness", "turning_damping")},
         "to": [itself, apart]}),
     "drive_angle": Right(Model.drive_angle, {"node": "a", "motion": TABLE, "to": "c"}, {
-        "node": nodes(lacks_turn), "axis": axis("drive"),
+        "node": nodes(lacks_turn), "axis": given(axis("drive")),
         "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], [(1, 0), (0, 1)]),
         "to": [itself, lacks_turn]}),
     "drive_slide": Right(Model.drive_slide, {"node": "a", "motion": TABLE, "axis": Z, "to": "c"}, {
-        "axis": axis("drive"), "motion": have("motion of a drive", None, "abc", [(0.0, "1")])}),
+        "axis": [*given(axis("drive")), (None, "drive at 'a' has no axis: give axis=")],
+        "motion": have("motion of a drive", None, "abc", [(0.0, "1")])}),
     "move": Right(Model.move, {"node": "a", "direction": X, "motion": TABLE}, {
         "node": nodes(foreign, lacks_place),
         "direction": [*vectors("motion of a.position", 3),

@@ -79,6 +79,8 @@ def test_a_plan_is_one_length_for_motion_that_repeats():
     assert len(run.plan.schedule) == 1
     run.run_to(20.0)
     assert run.state.control.rejected == run.state.control.cuts == 0
+    assert "planned steps        by a run with a larger tolerance" in run.result().summary()
+    assert run.result().all_seconds > run.seconds
 
 
 def test_planned_steps_of_a_flexible_body():

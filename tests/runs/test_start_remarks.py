@@ -300,12 +300,13 @@ def test_two_drives_that_contradict_each_other_are_named():
     lambda m, **a: m.torsion_spring("arm end", 1.0, **a)])
 def test_axes_out_of_the_plane_are_refused(build):
     """In a planar model; what points to -z only where the sign of a motion would change."""
-    for axis in ((1, 0, 0), (0.0, 0.1, 1.0), (0, 0, 0), (1, 0), "x", None, (0, 0, np.nan)):
+    signed = "revolute" not in build.__code__.co_names
+    for axis in ((1, 0, 0), (0.0, 0.1, 1.0), (0, 0, 0), (1, 0), "x", (0, 0, np.nan),
+                 *[None] * (not signed)):
         with pytest.raises(InputError, match="axis of the .* at 'arm end' is .*: the model is "
                                              "planar, where all rotations are about "):
             build(hung(), axis=axis)
     build(hung(), axis=(0, 0, 2.0))
-    signed = "revolute" not in build.__code__.co_names
     if signed:
         with pytest.raises(InputError, match=r"is \(0, 0, -1\): .* change the sign of angles "):
             build(hung(), axis=(0, 0, -1))
