@@ -79,7 +79,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
             state.now[:] = start_state
             at_rest = settle(run, tolerance, spinning, near=slack)
             slack |= at_rest and not steady.rotates
-        if at_rest:
+        if at_rest and np.isfinite(state.residual).all():       # of what is fixed, too
             if not steady.rotates and (folded := tensions.spurious(run)):
                 state.now[:] = start_state
                 raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}",
