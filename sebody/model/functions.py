@@ -11,6 +11,7 @@ from numba import njit
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.compiler.user_code import (
+    Results,
     Source,
     compile_controller,
     compile_force,
@@ -91,9 +92,10 @@ def compiled_law(function: Callable[..., None], name: str, sizes: tuple[int, int
 
     def law(t, y, x, u, parameters):
         own(t, y, x, u[:states], u[states:], parameters)
-    return _remembered(compile_controller(name, source(law),
+    return _remembered(compile_controller(name, source(own),
                                           (inputs, states, states + outputs, count),
-                                          ", ".join(LAW), "rates and u"), law)
+                                          ", ".join(LAW), "rates and u", Results(rates=states)),
+                       law)
 
 
 def compiled_derivatives(function: Callable[..., None], name: str,
@@ -113,9 +115,10 @@ def compiled_derivatives(function: Callable[..., None], name: str,
 
     def derivatives(t, y, x, u, parameters):
         own(t, y, x, u.reshape(rows, columns), parameters)
-    return _remembered(compile_controller(name, source(derivatives),
+    return _remembered(compile_controller(name, source(own),
                                           (inputs, states, rows * columns, count),
-                                          ", ".join(DERIVATIVES), "derivatives"), derivatives)
+                                          ", ".join(DERIVATIVES), "derivatives",
+                                          Results(rows=rows)), derivatives)
 
 
 def source(function: Callable) -> Source:
