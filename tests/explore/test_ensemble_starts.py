@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lane_models import linkage
+from lane_models import linkage, single
 from noise import noise
 from numpy.testing import assert_allclose
 
@@ -51,12 +51,9 @@ def test_starts_with_other_masses_are_those_of_single_runs(index):
     outputs = {"tip": "tip.acceleration", "elbow": f"{made.joints[-1].name}.force"}
     found = Ensemble(made, H, scheme).run({name: [factor] for name, factor in given.items()},
                                           2 * H, outputs)
-    handles = [handle(made, name) for name in given]
     for name, quantity in outputs.items():
         def alone(*factors, quantity=quantity):
-            for one, factor in zip(handles, factors, strict=True):
-                one.set(np.array(factor))
-            return simulate(made, H, 2 * H, scheme)[quantity]
+            return single(made, dict(zip(given, factors, strict=True)), H, 2 * H, scheme)[quantity]
         expected = alone(*given.values())
         rounded = noise(alone, *given.values(), most=1e-8).max()
         assert_allclose(found[name][0], expected, rtol=0,
