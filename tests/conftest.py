@@ -6,9 +6,20 @@ the home folder are not seen.
 """
 
 import os
+import signal
+
+import pytest
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["SEBODY_KERNELS"] = os.path.join(__file__, "none")   # none of whoever runs the tests
+
+
+@pytest.fixture
+def interruptible():
+    """Ctrl-C interrupts, though a shell that starts tests in the background has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def pytest_sessionstart(session):

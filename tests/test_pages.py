@@ -1,6 +1,7 @@
 """Every block of code and every command of the pages runs, page by page and in its order."""
 
 import re
+from pathlib import Path
 
 import pytest
 from copies import ROOT
@@ -47,3 +48,40 @@ def test_blocks_that_do_not_run_have_a_reason():
     exempt = {name: block.reason for name, page in PAGES.items()
               for block in blocks(page.read_text()) if block.reason}
     assert all(len(reason) > 10 for reason in exempt.values()), exempt
+
+
+NAMED = re.compile(r"(?<![\w/.~$}-])((?:\.[a-z]+|[a-z_]\w*)/[\w./*-]*[\w/*]|test_\w+\.py)")
+OURS = tuple(sorted({path.name for path in ROOT.iterdir() if path.is_dir()} - {".git"}))
+SCRIPTS = [path for path in (*(ROOT / ".ci").iterdir(), *(ROOT / ".github/workflows").iterdir(),
+                             ROOT / "pyproject.toml") if path.is_file()]
+
+
+def missing(text: str, folder: Path) -> list[str]:
+    """Paths of this tree that a text of a folder names, does not make, and that do not exist."""
+    found, made = [], re.findall(r"New file `([^`]+)`", text)
+    for name in NAMED.findall(text):
+        if name in made:
+            continue
+        first, _, rest = name.partition("/")
+        beside = [one for one in (folder, *folder.parents) if one.is_relative_to(ROOT)]
+        places = [one / name for one in beside if first in OURS or (one / first).is_dir()]
+        if not rest and not list((ROOT / "tests").rglob(name)):
+            found.append(name)
+        elif rest and places and not any(
+                one.exists() or list(one.parent.glob(one.name)) for one in places):
+            found.append(name)
+    return found
+
+
+@pytest.mark.parametrize("path", [*SCRIPTS, *all_pages()],
+                         ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_paths_that_are_named_exist(path):
+    """A script with a path that moved tests nothing, or fails where nobody looks."""
+    assert not missing(path.read_text(), path.parent)
+
+
+def test_a_path_that_does_not_exist_is_found():
+    assert missing("run tests/runs/test_statics.py and tests/runs/test_gone.py, test_gone.py; "
+                   "tests/runs/gone/, derive/*.py, derive/*.gone, other/thing.py", ROOT) == [
+                       "tests/runs/test_gone.py", "test_gone.py", "tests/runs/gone/",
+                       "derive/*.gone"]

@@ -119,8 +119,9 @@ def type_of(kind: np.dtype) -> types.Type:
 
 def processor() -> tuple[str, str]:
     """Name and features of the processor that is compiled for, as LLVM knows them."""
-    return (config.CPU_NAME or binding.get_host_cpu_name(),
-            config.CPU_FEATURES or binding.get_host_cpu_features().flatten())
+    name, features = config.CPU_NAME, config.CPU_FEATURES       # none of them is a choice, too
+    return (binding.get_host_cpu_name() if name is None else name,
+            binding.get_host_cpu_features().flatten() if features is None else features)
 
 
 def guarded(function: Callable) -> Callable:
@@ -207,8 +208,8 @@ def _mark(function: Callable, made_from: str, kept: bool) -> None:
 
 
 def _mark_name(source: Path, name: str) -> str:
-    processor = binding.get_host_cpu_name()
-    return f"{source.stem}.{name}.plain.{sys.implementation.cache_tag}.{processor}.sebody"
+    own = f"{zlib.crc32(repr(processor()).encode()):08x}"
+    return f"{source.stem}.{name}.plain.{sys.implementation.cache_tag}.{own}.sebody"
 
 
 def _stamp(made_from: str) -> str:

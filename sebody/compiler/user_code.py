@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
+from typing import NamedTuple
 
 from llvmlite import ir
 from numba import carray, cfunc, njit, types
@@ -34,7 +35,7 @@ FORCE = types.void(types.int64, types.float64, _floats, _floats, _floats)
 _ARRAYS = types.void(types.float64, _given, _given, types.Array(types.float64, 1, "C"))
 CONTROLLER = types.int64(types.float64, _floats, _floats, _floats, _floats)
 _written = types.Array(types.float64, 1, "C")
-_CONTROL = types.void(types.float64, _given, _written, _written, _given)
+_table = types.Array(types.float64, 2, "C")
 NO_RECORD = 0                       # its address where none is kept
 MOST_SHARED = 128                   # whose machine code is kept for functions to come
 
@@ -44,6 +45,40 @@ _PASSING = {
     FORCE: lambda call, last: lambda n, t, x, v, force: call(n, t, x, v, force, last),
     CONTROLLER: lambda call, last: lambda t, y, x, u, parameters: call(t, y, x, u, parameters,
                                                                        last)}
+
+
+class Results(NamedTuple):
+    """How a controller is given the array of its results: as it is, or as one or two others.
+
+    Parts of it are made beside the function: arrays that checked functions pass on to others are
+    counted, which takes longer than most laws.
+    """
+
+    rates: int | None = None                        # as that many, and the others
+    rows: int | None = None                         # as a table with so many rows
+
+    def signature(self):
+        """Of the function."""
+        given = ((_written, _written) if self.rates is not None else
+                 (_table if self.rows is not None else _written,))
+        return types.void(types.float64, _given, _written, *given, _given)
+
+    def arguments(self) -> Callable:
+        """A compiled function that gives the arguments of the controller as a tuple."""
+        rates, rows = self
+        if rates is not None:
+            def arguments(t, y, x, u, parameters):
+                return t, y, x, u[:rates], u[rates:], parameters
+        elif rows is not None:
+            def arguments(t, y, x, u, parameters):
+                return t, y, x, u.reshape(rows, u.size // rows), parameters
+        else:
+            def arguments(t, y, x, u, parameters):
+                return t, y, x, u, parameters
+        return njit(arguments)
+
+
+AS_IT_IS = Results()
 
 
 @dataclass(frozen=True)
@@ -141,8 +176,8 @@ def _force(function: Callable) -> Callable:
 
 
 def compile_controller(name: str, source: Source, sizes: tuple[int, int, int, int],
-                       shape: str = "t, y, x, u, parameters", written: str = "u and x"
-                       ) -> ControlFunction:
+                       shape: str = "t, y, x, u, parameters", written: str = "u and x",
+                       results: Results = AS_IT_IS) -> ControlFunction:
     """A user's ``controller(t, y, x, u, parameters)`` as a C function of pointers.
 
     It returns 1 after a fault: what raises, and outputs or states that are not finite.
@@ -153,6 +188,8 @@ def compile_controller(name: str, source: Source, sizes: tuple[int, int, int, in
         Of y, x, u and the parameters.
     shape, written : str
         Arguments of the function as its user wrote it, and those it sets, for messages.
+    results : Results
+        How it is given u.
 
     Raises
     ------
@@ -161,7 +198,7 @@ def compile_controller(name: str, source: Source, sizes: tuple[int, int, int, in
     """
     made = ControlFunction(source.function, sizes)
     try:
-        _compile(made, CONTROLLER, _controller, source, sizes)
+        _compile(made, CONTROLLER, _controller, source, sizes, results)
     except Exception as error:
         raise InputError(f"controller {name!r} cannot be compiled: write a function "
                          f"({shape}) with arithmetic, math and numpy only, which sets entries of "
@@ -169,9 +206,11 @@ def compile_controller(name: str, source: Source, sizes: tuple[int, int, int, in
     return made
 
 
-def _controller(function: Callable, sizes: tuple[int, int, int, int]) -> Callable:
+def _controller(function: Callable, sizes: tuple[int, int, int, int], results: Results
+                ) -> Callable:
     """A controller of these sizes, with the address of a record of faults."""
-    returned = choice.way().guarded(_inner(_CONTROL, function))
+    returned = choice.way().guarded(_inner(results.signature(), function))
+    arguments = results.arguments()
     ny, nx, nu, count = sizes
     total = OTHERS + sum(sizes)
 
@@ -188,7 +227,7 @@ def _controller(function: Callable, sizes: tuple[int, int, int, int]) -> Callabl
                 record[OTHERS + ny + nx + i] = outputs[i]
             for i in range(count):
                 record[OTHERS + ny + nx + nu + i] = numbers[i]
-        raised, _ = returned((t, motion, states, outputs, numbers))
+        raised, _ = returned(arguments(t, motion, states, outputs, numbers))
         for i in range(nx):
             raised |= not math.isfinite(states[i])
         for i in range(nu):

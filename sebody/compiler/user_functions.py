@@ -24,12 +24,14 @@ class UserFunction:
 
     Attributes
     ----------
+    interpreted : callable
+        The function with helpers of Python alone, which tells what it did at a fault.
     read : mapping
         Values from outside that it was compiled with, by name.
     """
 
     def __init__(self, function: Callable, arguments: int):
-        self.function = function
+        self.function = self.interpreted = function
         self.read: Mapping[str, object] = {}
         self.record = np.zeros(1 + arguments)
         self.shared = None              # machine code of all equal functions, and what passes
@@ -59,8 +61,8 @@ class UserFunction:
         force = np.zeros(others.size // 2)
         try:
             with np.errstate(all="ignore"):
-                value = (self.function(t, *np.split(others, 2), force) if others.size else
-                         self.function(t))
+                value = (self.interpreted(t, *np.split(others, 2), force) if others.size else
+                         self.interpreted(t))
             did = f"gave {shown(force if others.size else value)}"
         except Exception as error:      # whatever the user's function raises
             did = f"raised {type(error).__name__}: {error}"
@@ -90,7 +92,7 @@ class ControlFunction(UserFunction):
             inputs[k].flags.writeable = False
         try:
             with np.errstate(all="ignore"):
-                self.function(t, *inputs)
+                self.interpreted(t, *inputs)
             did = f"gave u = {shown(inputs[2])}" if not np.isfinite(inputs[2]).all() else (
                 f"gave states {shown(inputs[1])}")
         except Exception as error:      # whatever the user's function raises

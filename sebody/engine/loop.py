@@ -67,7 +67,7 @@ from sebody.engine.step_control import (
     write_between,
 )
 from sebody.engine.vectors import swap
-from sebody.engine.work import add_work, take_back_work
+from sebody.engine.work import add_work, take_back_work, unknown_work
 
 
 @compiled
@@ -195,6 +195,9 @@ def _conclude(system, state, record, scheme, verdict):
             back(state)
             return INACCURATE if clock.chosen < SHORTEST * clock.step else NO_REASON
         add_work(system, state, clock.current_step)
+        if unknown_work(state) != 0.0:
+            take_back_work(state)
+            return NOT_FINITE
         if grows(system, state):
             take_back_work(state)
             return GROWS

@@ -35,6 +35,18 @@ def add_work(system, state, h):
 
 
 @compiled
+def unknown_work(state):
+    """Work of the step that was added, times zero: no number where a function of users has a fault.
+
+    Nothing else tells of one that acts on what is fixed or moved alone. Added member by member.
+    """
+    nothing = 0.0
+    for k in range(state.works.size):
+        nothing += 0.0 * state.works[k]
+    return nothing
+
+
+@compiled
 def take_back_work(state):
     """Take back the work of a step that is rejected after all."""
     if state.works.size > 0:

@@ -175,8 +175,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             x[i] = v[unknowns[first + i]]
         _evaluate(law[LAW_FUNCTION], t, y, x, copy, states, results, total, parameters)
         g = at(forces, element*n)
+        nothing = 0.0*results[total - 1]        # no number after a fault, though all may be signals
         for i in range(n):
-            g[i] = 0.0
+            g[i] = nothing
         if task != ENERGY:
             for i in range(states):
                 g[first + i] = mass*(a[unknowns[first + i]] - results[i])

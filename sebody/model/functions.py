@@ -11,6 +11,7 @@ from numba import njit
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.compiler.user_code import (
+    Results,
     Source,
     compile_controller,
     compile_force,
@@ -24,6 +25,8 @@ from sebody.model.outside import (
     refuse,
     values_read,
 )
+
+CHECKED = {"boundscheck": True}     # of all that users write, whatever options they compile it with
 
 # arguments
 OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
@@ -89,9 +92,10 @@ def compiled_law(function: Callable[..., None], name: str, sizes: tuple[int, int
 
     def law(t, y, x, u, parameters):
         own(t, y, x, u[:states], u[states:], parameters)
-    return _remembered(compile_controller(name, source(law),
+    return _remembered(compile_controller(name, source(own),
                                           (inputs, states, states + outputs, count),
-                                          ", ".join(LAW), "rates and u"), law)
+                                          ", ".join(LAW), "rates and u", Results(rates=states)),
+                       law)
 
 
 def compiled_derivatives(function: Callable[..., None], name: str,
@@ -111,9 +115,10 @@ def compiled_derivatives(function: Callable[..., None], name: str,
 
     def derivatives(t, y, x, u, parameters):
         own(t, y, x, u.reshape(rows, columns), parameters)
-    return _remembered(compile_controller(name, source(derivatives),
+    return _remembered(compile_controller(name, source(own),
                                           (inputs, states, rows * columns, count),
-                                          ", ".join(DERIVATIVES), "derivatives"), derivatives)
+                                          ", ".join(DERIVATIVES), "derivatives",
+                                          Results(rows=rows)), derivatives)
 
 
 def source(function: Callable) -> Source:
@@ -133,10 +138,29 @@ def compilable(function: Callable) -> Callable:
             return value
         if id(helper) not in made:
             made[id(helper)] = helper       # what calls itself is left to Numba's message
-            made[id(helper)] = njit(**_without(options, "nopython"))(rebuilt(helper, compiled))
+            made[id(helper)] = njit(**_without(options, "nopython") | CHECKED)(
+                rebuilt(helper, compiled))
         return made[id(helper)]
     copy, values = rebuilt(function, compiled), defaults(function).values()
     return _bound(copy, [compiled(value) for value in values]) if values else copy
+
+
+def interpretable(function: Callable) -> Callable:
+    """A function whose helpers are those of Python, where the user compiles some by Numba."""
+    made: dict[int, Callable] = {}
+
+    def interpreted(value: object) -> object:
+        helper = getattr(value, "py_func", value)
+        if not is_helper(helper):
+            return value
+        if id(helper) not in made:
+            made[id(helper)] = helper       # what calls itself is not compiled at all
+            copy = made[id(helper)] = rebuilt(helper, interpreted)
+            given = {name: interpreted(one) for name, one in (helper.__kwdefaults__ or {}).items()}
+            copy.__kwdefaults__ = given or None
+            copy.__defaults__ = tuple(map(interpreted, helper.__defaults__ or ())) or None
+        return made[id(helper)]
+    return interpreted(function)
 
 
 def rebuilt(function: Callable, replaced: Callable[[object], object]) -> Callable:
@@ -184,6 +208,7 @@ def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...
 def _remembered(made: UserFunction, function: Callable) -> UserFunction:
     """What was compiled, with the function as its user wrote it and what it was compiled with."""
     made.function, made.read = function, values_read(function)
+    made.interpreted = interpretable(function)
     return made
 
 
@@ -196,7 +221,8 @@ def _bound(function: Callable, values: Sequence[object]) -> Callable:
     inner = FunctionType(code, function.__globals__, function.__name__, None, function.__closure__)
     names = [f"default_{k}" for k in range(len(values))]
     arguments = list(code.co_varnames[:code.co_argcount - len(values)])
-    made: dict[str, Any] = dict(zip(names, values, strict=True)) | {"inner": njit(inner)}
+    made: dict[str, Any] = dict(zip(names, values, strict=True)) | {
+        "inner": njit(**CHECKED)(inner)}
     exec(f"def bound({', '.join(arguments)}):\n    return inner({', '.join(arguments + names)})",
          made)
     made["bound"].__name__ = function.__name__

@@ -94,7 +94,8 @@ class Loading:
             self._start = self.run.state.now.copy()
             target = min(self.share + self.step, 1.0)
             self.load(target)
-            if self._reach(target):
+            # residuals of fixed coordinates tell of a function that raised there
+            if self._reach(target) and np.isfinite(self.run.state.residual).all():
                 self.share = target
                 self.run.state.now[RECORD_T] = target
                 self.run.rows.stretches.append(self.run.state.now[None].copy())

@@ -49,12 +49,14 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
     matrices = (turning(run, spin) if spin.rotates else
                 tuple(derivative(run, *weights) for weights in np.eye(3)))
     M, C, K = (A.toarray() for A in matrices)
+    did = user_faults.fault(run.model, -np.inf)     # which may concern what is fixed alone
+    if not (did or all(np.isfinite(A).all() for A in (K, C, M))):
+        did = "its forces are not finite"
+    if did:
+        raise InputError(f"the state cannot be evaluated: {did}")
     gears = Gears(run.model, run.numbering, *run.arrays_of_loop)
     for key, message in teeth_remarks(gears, M, K).items():
         watch.say(key, message)
-    if not all(np.isfinite(A).all() for A in (K, C, M)):
-        did = user_faults.fault(run.model, -np.inf) or "its forces are not finite"
-        raise InputError(f"the state cannot be evaluated: {did}")
     return M, C, K
 
 

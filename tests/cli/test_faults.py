@@ -36,7 +36,8 @@ def goes_on(folder, capsys):
 
 
 @pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypatch, number, code):
+def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypatch, interruptible,
+                                                     number, code):
     """Sent by the run to its own process; what comes while files are written is too late."""
     def send(bar, fraction):
         os.kill(os.getpid(), number)
@@ -70,7 +71,7 @@ def test_a_process_ends_soon_after_a_signal(tmp_path, capsys):
     goes_on(tmp_path, capsys)
 
 
-def test_a_signal_before_there_are_results(capsys, monkeypatch):
+def test_a_signal_before_there_are_results(capsys, monkeypatch, interruptible):
     def build_scene(name, changes):
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(1.0)

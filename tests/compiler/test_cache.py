@@ -178,6 +178,7 @@ def test_a_damaged_file_counts_as_absent(program, name, damage):
 
 
 def test_what_was_compiled_for_another_processor_is_kept_apart(program, monkeypatch):
+    monkeypatch.delenv("NUMBA_CPU_NAME", raising=False)
     run(program)
     monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
     assert run(program) == ("7 0", "")

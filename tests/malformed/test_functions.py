@@ -14,6 +14,7 @@ from sebody import (
     Simulation,
     SimulationError,
     Tolerance,
+    generalized_alpha,
     simulate,
     with_corners,
 )
@@ -115,6 +116,177 @@ def test_a_fault_stops_the_run(force, said):
             # the first step has an error of h^2 / 4 in all further places
             assert caught.value.result["ball.position"][-1, 0] == pytest.approx(
                 t**2 / 4, abs=h**2 / 4)
+
+
+def wall(*forces) -> Model:
+    """The ball, and a fixed mass beside it that forces act on."""
+    model = ball()
+    model.force("ball", (0.5, 1.0), 1.0)
+    model.point_mass("stone", model.node("wall", (2.0, 1.0), keeps="translation"), 3.0)
+    model.fix("wall", "position")
+    for force in forces:
+        force(model)
+    return model
+
+
+def motor(model):
+    model.actuator("motor", node="wall", direction=(0.0, 1.0))
+    law_of("motor")(model)
+
+
+def law_of(output):
+    """A continuous law that writes beyond its outputs, late."""
+    def law(t, y, x, rates, u, parameters):
+        u[0] = 1.0
+        if t > BEGIN:
+            u[5] = 1.0
+    return lambda model: model.controller("law", law, ["ball.position.x"], [output])
+
+
+ON_FIXED = [(lambda model: model.user_force("own", ["wall"], writes_late),
+             "user force 'own' raised IndexError: index 1000000000 is out of bounds"),
+            (lambda model: model.force("wall", (1.0, 0.0), not_a_number, name="push"),
+             "the function of 'push' gave nan"),
+            (motor, "controller 'law' raised IndexError: index 5 is out of bounds"),
+            (law_of("signal"), "controller 'law' raised IndexError: index 5 is out of bounds")]
+
+
+@pytest.mark.parametrize("force, said", ON_FIXED)
+@pytest.mark.parametrize("options", [{}, {"tolerance": Tolerance(1e-3)},
+                                     {"scheme": generalized_alpha(index=2)}])
+def test_a_fault_of_what_moves_nothing_stops_the_run(force, said, options):
+    """A force on what is fixed, or a signal: no unknown tells of it."""
+    with pytest.raises(SimulationError) as caught:
+        simulate(wall(force), 0.125, 1.0, **options)
+    assert str(caught.value).startswith(f"stopped at t = {BEGIN}") or options
+    assert f"{said}" in str(caught.value) and "at t = 0.5" in str(caught.value)
+    result = caught.value.result
+    assert BEGIN - 0.125 <= result.t[-1] <= BEGIN + LAST * 0.125
+    if not options:     # the trapezoidal rule's, of a constant force
+        np.testing.assert_allclose(result["ball.position"][-1], result.t[-1]**2 * np.array(
+            (0.25, 0.5)) / 2, rtol=1e-9)
+
+
+def test_a_fault_of_what_is_fixed_stops_statics_and_members():
+    model = wall(ON_FIXED[0][0])
+    model.spring("ball", "wall", stiffness=5.0)
+    assert equilibrium(model, t=0.25).t[-1] == pytest.approx(1.0)     # all of the load
+    with pytest.raises(SimulationError, match="no equilibrium .* user force 'own' raised IndexErr"):
+        equilibrium(model, t=1.0)
+    result = simulate(model, 0.125, 0.5)
+    linearize(result)
+    result.state.loads[::3] = 2.0       # the time that the force is given
+    with pytest.raises(InputError, match="the state cannot be evaluated: user force 'own' raised"):
+        linearize(result)
+
+
+TABLE = np.array([1.0, 2.0, 3.0])
+
+
+def entry(k):
+    return TABLE[int(k)]
+
+
+@njit(boundscheck=False)
+def entry_of_another(k):
+    return entry(k) + 0.0
+
+
+def behind_a_default(t, look=entry):
+    return look(5.0 * t)
+
+
+def by_a_default(t, table=TABLE):
+    return table[int(5.0 * t)]
+
+
+def in_a_force(t, x, v, force):
+    force[1] = entry_of_another(5.0 * t)
+
+
+def in_a_law(t, y, x, rates, u, parameters):
+    u[0] = entry(5.0 * t)
+
+
+def in_a_law_of_samples(t, y, x, u, parameters):
+    u[0] = entry(5.0 * t)
+
+
+def derivatives(t, y, x, derivatives, parameters):
+    derivatives[0, len(y)] = 0.0
+
+
+def push_by(law, **options):
+    def build(model):
+        model.actuator("motor", node="ball", direction=(0.0, 1.0))
+        model.controller("law", law, ["ball.position.x"], ["motor"], **options)
+    return build
+
+
+def of_law(change, **options):
+    """A continuous law with one of everything, which goes wrong after the time BEGIN."""
+    def law(t, y, x, rates, u, parameters):
+        u[0], rates[0] = parameters[0], y[0] - x[0]
+        if t > BEGIN:
+            change(t, y, x, rates, u, parameters)
+    return push_by(law, states=[0.0], parameters=[1.0], **options)
+
+
+def writes_far(t, y, x, rates, u, parameters):
+    u[10**7] = 1.0
+
+
+def writes_beyond(t, y, x, rates, u, parameters):
+    u[5] = 1.0
+
+
+def writes_rates(t, y, x, rates, u, parameters):
+    rates[1] = 1.0          # which would be the output
+
+
+def reads_readings(t, y, x, rates, u, parameters):
+    u[0] = y[3]
+
+
+def reads_states(t, y, x, rates, u, parameters):
+    u[0] = x[-2]
+
+
+def reads_parameters(t, y, x, rates, u, parameters):
+    u[0] = parameters[7]
+
+
+TOO_FAR = [(load(lambda t: entry(5.0 * t)), "the function of 'push'", 3, 3),
+           (load(lambda t: entry_of_another(5.0 * t)), "the function of 'push'", 3, 3),
+           (load(behind_a_default), "the function of 'push'", 3, 3),
+           (load(by_a_default), "the function of 'push'", 3, 3),
+           (user(in_a_force), "user force 'own'", 3, 3),
+           (push_by(in_a_law), "controller 'law'", 3, 3),
+           (push_by(in_a_law_of_samples, period=0.125), "controller 'law'", 3, 3),
+           (of_law(writes_far), "controller 'law'", 10**7, 1),
+           (of_law(writes_beyond), "controller 'law'", 5, 1),
+           (of_law(writes_rates), "controller 'law'", 1, 1),
+           (of_law(reads_readings), "controller 'law'", 3, 1),
+           (of_law(reads_states), "controller 'law'", -2, 1),
+           (of_law(reads_parameters), "controller 'law'", 7, 1)]
+
+
+@pytest.mark.parametrize("force, what, index, size", TOO_FAR)
+def test_reading_and_writing_beyond_an_end_stops_the_run(force, what, index, size):
+    """In continuous laws and in helpers, too, with the words of the outer function."""
+    with pytest.raises(SimulationError) as caught:
+        simulate(ball(force), 0.0625, 1.0)
+    told = f"{what} raised IndexError: index {index} is out of bounds for axis"
+    assert told in str(caught.value) and f"with size {size} at t = " in str(caught.value)
+    when = 0.6 if size == 3 else BEGIN
+    assert when - 0.0626 <= caught.value.result.t[-1] <= when + 1e-3
+
+
+def test_derivatives_beyond_their_end_stop_the_run():
+    model = ball(push_by(lambda t, y, x, rates, u, parameters: None, derivatives=derivatives))
+    with pytest.raises(SimulationError, match="derivatives of controller 'law' raised IndexError: "
+                       "index 1 is out of bounds for axis 1 with size 1 at t = "):
+        simulate(model, 0.0625, 1.0)
 
 
 @pytest.mark.parametrize("force, said", [

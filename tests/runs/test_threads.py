@@ -121,7 +121,7 @@ def test_no_thread_is_left_when_a_run_stops(raised, seen):
     assert np.array_equal(run.run_to(0.1).rows.all(), whole)
 
 
-def test_a_signal_stops_all_threads():
+def test_a_signal_stops_all_threads(interruptible):
     run = Simulation(MODELS["chain"](), 0.01, threads=3)
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

@@ -38,7 +38,7 @@ from sebody.engine.state import EVALUATED, KEPT, ROTATED
 from sebody.engine.step import predict, settle
 from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
-from sebody.engine.work import add_work
+from sebody.engine.work import add_work, unknown_work
 
 
 @compiled(nogil=True)
@@ -80,6 +80,8 @@ def _look_at_step(system, state, scratch):
         running = control.reason == RUNS
     scratch.table[RUNNING] = bits_of(running)
     add_work(system, state, state.clock.current_step)
+    control.reason = where(running & (unknown_work(state) != 0.0), spread(CUT), control.reason)
+    running = control.reason == RUNS
     control.reason = where(grows(system, state, scratch, running), spread(JUDGED), control.reason)
 
 

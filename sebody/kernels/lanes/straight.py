@@ -17,6 +17,7 @@ import numpy as np
 from llvmlite import binding, ir
 from numpy.typing import NDArray
 
+from sebody.compiler.choice import way
 from sebody.compiler.inside.lanes import VECTOR, same
 from sebody.contract.counts import LANES, MEMBERS
 from sebody.kernels.instructions import WORD, short_loop
@@ -79,9 +80,9 @@ class Straight:
     """
 
     def __init__(self, entries: Entries):
-        triple, features = binding.get_process_triple(), binding.get_host_cpu_features().flatten()
-        target = binding.Target.from_triple(triple).create_target_machine(
-            cpu=binding.get_host_cpu_name(), features=features, opt=2)
+        name, features = way().processor()
+        target = binding.Target.from_triple(binding.get_process_triple()).create_target_machine(
+            cpu=name, features=features, opt=2)
         module = binding.parse_assembly(str(_functions(entries)))
         self._engine = binding.create_mcjit_compiler(module, target)
         self._engine.finalize_object()
