@@ -73,6 +73,91 @@ class SolidPrestress:
         whole = self._motion.T @ sparse.kron(by_nodes, sparse.eye_array(3)) @ self._motion
         return sparse.csc_array(whole + self._of_turning(forces, whole.shape))
 
+    def projected(self, displacements: NDArray, basis: NDArray) -> NDArray:
+        """Geometric stiffnesses of displacements (n_dofs, k) on a basis (n_dofs, n), (k, n, n)."""
+        n, k = basis.shape[1], displacements.shape[1]
+        shapes = (self._motion @ basis).reshape(self._count, 3 * n)
+        moved = (self._motion @ displacements).reshape(self._count, 3 * k)
+        if not k:
+            return np.zeros((0, n, n))
+        if n > _FEW or k < _SINGLE:
+            result = self._by_nodes(shapes, moved)
+        else:
+            half = np.zeros((k, n * n))
+            for nodes, slopes, volumes, law in self._groups:
+                count, g, a, _ = slopes.shape
+                step = max(1, int(_BLOCK / (g * max(6 * n * n, 18 * k))))
+                made = np.empty((min(step, count) * g, 6, n, n))
+                for first in range(0, count, step):
+                    part = slice(first, first + step)
+                    by_axes = _by_axes(slopes[part])
+                    own = nodes[part]
+                    gradients = (by_axes @ shapes[own]).reshape(-1, 3, 3, n)     # u_c,i: [i, c]
+                    products = made[:len(gradients)]
+                    for m, (i, j) in enumerate(zip(_FIRST, _SECOND, strict=True)):
+                        np.matmul(gradients[:, i].transpose(0, 2, 1), gradients[:, j],
+                                  out=products[:, m])
+                    stresses = _stresses(by_axes @ moved[own], volumes[part],
+                                         law if law.ndim == 2 else law[part])
+                    stresses[:, :3] *= 0.5
+                    half += stresses.reshape(-1, k).T @ products.reshape(-1, n * n)
+            half = half.reshape(k, n, n)
+            result = half + half.transpose(0, 2, 1)
+        if self._tied:
+            result = result + self._turning(moved, basis)
+        return result
+
+    def _by_nodes(self, shapes: NDArray, moved: NDArray) -> NDArray:
+        """The same of many shapes: a scalar matrix of the nodes for each prestress."""
+        size, k, n = self._count, moved.shape[1] // 3, shapes.shape[1] // 3
+        keys = np.concatenate([
+            (nodes[:, :, None] * size + nodes[:, None, :]).ravel() for nodes, *_ in self._groups])
+        places, which = np.unique(keys, return_inverse=True)
+        starts = np.concatenate([[0], np.cumsum(np.bincount(places // size, minlength=size))])
+        columns, flat = places % size, shapes.reshape(3 * size, n)
+        result = np.empty((k, n, n))
+        for number in range(k):
+            own = np.ascontiguousarray(moved.reshape(size, 3, k)[:, :, number])
+            entries = []
+            for nodes, slopes, volumes, law in self._groups:
+                for first in range(0, len(nodes), _ELEMENTS):
+                    part = slice(first, first + _ELEMENTS)
+                    by_axes = _by_axes(slopes[part])
+                    stresses = _stresses(by_axes @ own[nodes[part]], volumes[part],
+                                         law if law.ndim == 2 else law[part])
+                    pushed = stresses[:, _TENSOR, 0] @ by_axes.reshape(-1, 3, by_axes.shape[2])
+                    entries.append((by_axes.transpose(0, 2, 1) @ pushed.reshape(by_axes.shape)
+                                    ).ravel())
+            matrix = sparse.csr_array((np.bincount(which, np.concatenate(entries), len(places)),
+                                       columns, starts), shape=(size, size))
+            result[number] = flat.T @ (matrix @ shapes).reshape(3 * size, n)
+        return result
+
+    def _turning(self, moved: NDArray, basis: NDArray) -> NDArray:
+        """What `_of_turning` adds, of all prestresses on a basis: forces on tied nodes alone."""
+        k = moved.shape[1] // 3
+        tied = np.zeros(self._count, dtype=bool)
+        for _, nodes, _ in self._tied:
+            tied[nodes] = True
+        forces = np.zeros((self._count, 3, k))
+        for nodes, slopes, volumes, law in self._groups:
+            chosen = np.flatnonzero(tied[nodes].any(axis=1))
+            for first in range(0, len(chosen), _ELEMENTS):
+                part = chosen[first:first + _ELEMENTS]
+                by_axes = _by_axes(slopes[part])
+                stresses = _stresses(by_axes @ moved[nodes[part]], volumes[part],
+                                     law if law.ndim == 2 else law[part])
+                pushed = by_axes.transpose(0, 2, 1) @ stresses[:, _TENSOR].reshape(
+                    len(part), -1, 3 * k)
+                np.add.at(forces, nodes[part], pushed.reshape(*nodes[part].shape, 3, k))
+        result = np.zeros((k, basis.shape[1], basis.shape[1]))
+        for turns, nodes, arms in self._tied:
+            moments = np.einsum("nik,nj->kij", forces[nodes], arms)
+            block = (moments + moments.transpose(0, 2, 1)) / 2
+            block -= np.trace(moments, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+            result += basis[turns].T @ block @ basis[turns]
+        return result
+
     def forces(self, displacement: NDArray) -> NDArray:
         """Internal forces (n_dofs,) of the stresses: those of the stiffness of such elements."""
         total = np.zeros((self._count, 3))
@@ -108,6 +193,33 @@ class SolidPrestress:
             return sparse.csc_array(shape)
         places = np.concatenate(rows), np.concatenate(columns)
         return sparse.csc_array(sparse.coo_array((np.concatenate(entries), places), shape=shape))
+
+
+_FEW = 64       # shapes up to which products of their gradients at all points are less work
+_SINGLE = 4     # prestresses below which making these products does not pay
+_BLOCK = 2.5e5  # numbers of a block of elements, which stay in the cache
+_ELEMENTS = 2000
+
+
+def _by_axes(slopes: NDArray) -> NDArray:
+    """Slopes (e, g, a, 3) as matrices (e, 3 g, a)."""
+    count, g, a, _ = slopes.shape
+    return np.ascontiguousarray(slopes.transpose(0, 1, 3, 2)).reshape(count, 3 * g, a)
+
+
+def _stresses(derived: NDArray, volumes: NDArray, law: NDArray) -> NDArray:
+    """Stresses times volume (e g, 6, k) of derivatives u_c,i (e, 3 g, 3 k)."""
+    count, g = volumes.shape
+    gradients = derived.reshape(count * g, 3, 3, -1)
+    strains = np.empty((count * g, 6, gradients.shape[3]))
+    for m, (i, j) in enumerate(zip(_FIRST, _SECOND, strict=True)):
+        strains[:, m] = gradients[:, i, j] if i == j else gradients[:, i, j] + gradients[:, j, i]
+    if law.ndim == 2:
+        stresses = law @ strains
+    else:
+        stresses = (law[:, None] @ strains.reshape(count, g, 6, -1)).reshape(strains.shape)
+    stresses *= volumes.reshape(-1, 1, 1)
+    return stresses
 
 
 def knows(kind: str) -> bool:

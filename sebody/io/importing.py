@@ -26,6 +26,7 @@ from sebody.io.registry import naming, read_source
 from sebody.io.rigid import rigid_residual
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
+from sebody.reduction.factor import Factor
 from sebody.reduction.free import Resisted
 from sebody.reduction.grounded import grounded_body
 from sebody.reduction.methods import free_frequencies, reduce
@@ -57,7 +58,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
                 modes: int | Accuracy = 0, method: str = "craig-bampton", *,
                 kind: str | None = None, units: str = "", base: ArrayLike | None = None,
                 damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
-                compare_free: bool = False,
+                compare_free: bool = False, factor: Factor | None = None,
                 progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """A body of the files of an FE program, as ``sebody import`` makes it.
 
@@ -90,6 +91,8 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
     compare_free : bool
         Compare the first free frequencies of the body with those of the FE model without
         interfaces: what its rigid faces stiffen. It takes another factorization.
+    factor : function, optional
+        Factors the stiffness in the place of SuperLU, see `sebody.reduction.reduce`.
     progress : function of a text, or True, optional
         Is told what takes long, what it will cost, and what costs less; True for lines on standard
         error.
@@ -105,7 +108,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         check_target(output, *TARGET)
     watch = watching(progress)
     wanted = Wanted(parsed(interfaces), modes, method, units, damping,
-                    inputs.flag(compare_free, "compare_free"), base)
+                    inputs.flag(compare_free, "compare_free"), base, factor)
     watch.stage(f"reading {path}")
     file = imported(read_source(path, kind), wanted, path, watch)
     with naming(path):
@@ -125,6 +128,7 @@ class Wanted(NamedTuple):
     damping: float | Sequence[float] = 0.0
     compare_free: bool = False
     base: ArrayLike | None = None
+    factor: Factor | None = None
 
 
 def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
@@ -140,7 +144,8 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     interfaces, method = wanted.interfaces, wanted.method
     boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
-        body = reduce(model, boundary.items, wanted.modes, method, judged=True, progress=watch)
+        body = reduce(model, boundary.items, wanted.modes, method, judged=True,
+                      factor=wanted.factor, progress=watch)
     except Resisted as error:
         raise InputError(f"{path}: {error}{reading.cards(error.nodes, error.turns)}") from error
     except InputError as error:

@@ -34,9 +34,21 @@ def read_triplets(path: Path, size: int, what: str, remedy: str,
         line = int(np.argmax(beyond))
         raise fault(path, line + 1, f"row {entries[line, :2].max():g}, but {rows_of} lists {size}",
                     "give files of one run of the program")
-    rows, columns = (whole(entries[:, k], path, size, "row or column", remedy) for k in (0, 1))
-    _check_entries(path, rows, columns, size, remedy)
-    return symmetric(rows - 1, columns - 1, entries[:, 2], size)
+    # indices of 32 bits: those of 64 make products of such matrices with others slower
+    rows, columns = (whole(entries[:, k], path, size, "row or column", remedy).astype(np.int32)
+                     for k in (0, 1))
+    values = entries[:, 2].copy()
+    del entries
+    diagonal = np.zeros(size, dtype=bool)
+    diagonal[rows[rows == columns] - 1] = True
+    mixed = (rows < columns).any() and (rows > columns).any()
+    if mixed or not diagonal.all():
+        _check_entries(path, rows.astype(int), columns.astype(int), size, remedy)
+    try:
+        return symmetric(rows - 1, columns - 1, values, size)
+    except WrongEntry:
+        _check_entries(path, rows.astype(int), columns.astype(int), size, remedy)
+        raise
 
 
 def _check_entries(path: Path, rows: NDArray, columns: NDArray, size: int, remedy: str) -> None:

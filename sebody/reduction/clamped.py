@@ -9,7 +9,7 @@ from scipy import linalg, sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from sebody.basics.errors import InputError
-from sebody.reduction.factor import FactoredStiffness, motions_without_strain
+from sebody.reduction.factor import Factor, FactoredStiffness, motions_without_strain
 from sebody.reduction.watch import SILENT, Watch
 
 _DENSE_LIMIT = 1000  # internal DOFs up to which the dense eigenvalue solver is used
@@ -43,6 +43,8 @@ class ClampedInterior:
         Name of the DOF of a row, for messages.
     watch : Watch
         Is told what takes long.
+    factor : function, optional
+        A user's, see `Factor`.
 
     Raises
     ------
@@ -53,7 +55,8 @@ class ClampedInterior:
     def __init__(self, stiffness: sparse.csc_array, mass: sparse.csc_array, held: NDArray,
                  means: sparse.csr_array | None = None, rigid: NDArray | None = None,
                  lengths: NDArray | None = None,
-                 name: Callable[[int], str] = "row {}".format, watch: Watch = SILENT):
+                 name: Callable[[int], str] = "row {}".format, watch: Watch = SILENT,
+                 factor: Factor | None = None):
         size = stiffness.shape[0]
         self.internal = internal = np.setdiff1d(np.arange(size), held)
         self._size = size
@@ -70,7 +73,7 @@ class ClampedInterior:
         self._check_held(free[internal], name)
         watch.stage(f"factoring the stiffness of {len(internal)} DOFs")
         self._factor = FactoredStiffness(self._stiffness, free[internal],
-                                         lambda row: name(internal[row]), _REMEDY)
+                                         lambda row: name(internal[row]), _REMEDY, factor)
         self._border()
         self._known: tuple[NDArray, NDArray] | None = None
         self._watch = watch

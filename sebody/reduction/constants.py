@@ -121,17 +121,32 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
     """Load modes and resultants; a prestress is its displacement above the forces on the means."""
     ties, basis, n = boundary.ties, component.basis, boundary.ties.size
     shapes = ties.spread(basis)
-    _check_linear(fe_model, shapes @ np.ones(shapes.shape[1]))
-
+    # of solids it is linear by construction, and projected without a matrix of all DOFs
+    projected = getattr(fe_model.geometric_stiffness, "projected", None)
+    if projected is None:
+        _check_linear(fe_model, shapes @ np.ones(shapes.shape[1]))
+    faces = ties.tied_rows()
+    stretched = fe_model.stiffness[:, faces].T
     done = count(1)
 
-    def geometric(prestress: NDArray) -> NDArray:
-        watch.stage(f"geometric stiffness of prestress {next(done)}")
-        displacement = ties.spread(prestress[:n])
-        tangent = fe_model.geometric_stiffness(displacement)
-        G = shapes.T @ (tangent @ shapes) + boundary.second_order(
-            fe_model.stiffness @ displacement, prestress[n:], basis)
-        return (G + G.T) / 2
+    def one_by_one(displacements: NDArray, onto: NDArray) -> NDArray:
+        result = np.zeros((displacements.shape[1], onto.shape[1], onto.shape[1]))
+        for k, displacement in enumerate(displacements.T):
+            watch.stage(f"geometric stiffness of prestress {next(done)}")
+            result[k] = onto.T @ (fe_model.geometric_stiffness(displacement) @ onto)
+        return result
+
+    def geometric(prestresses: NDArray, turn: NDArray | None) -> NDArray:
+        own, onto = (basis, shapes) if turn is None else (basis @ turn, shapes @ turn)
+        displacements = ties.spread(prestresses[:n])
+        if projected:
+            watch.stage(f"geometric stiffness of {displacements.shape[1]} prestresses")
+        G = (projected or one_by_one)(displacements, onto)
+        forces = np.zeros(len(shapes))
+        for k, on_faces in enumerate((stretched @ displacements).T):
+            forces[faces] = on_faces
+            G[k] += boundary.second_order(forces, prestresses[n:, k], own)
+        return (G + G.transpose(0, 2, 1)) / 2
 
     def largest(motions: NDArray) -> NDArray:
         return integrals.largest(ties.spread(motions[:n]))

@@ -1,6 +1,7 @@
 """Factors of a sparse stiffness whose motions without strain are known."""
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +14,21 @@ from sebody.basics.errors import InputError
 _SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
 STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
 _STILL = 1e-8  # motion of held rows that is rounding, relative to the extent of the body
+_RESIDUAL = 1e-8    # of equations that a user's factor has solved, relative to their summands
 _SUSPECT = 1e-11  # lowest eigenvalue above which no pivot is looked at
 _SMALL = 5000  # DOFs up to which pivots are looked at in any case
 _SHOWN, _LISTED = 5, 60  # nodes that a message names, DOFs that it looks for them at
+
+
+class Solver(Protocol):
+    """A factored matrix."""
+
+    def solve(self, forces: NDArray) -> NDArray:
+        """Solutions (n, k) of right-hand sides (n, k)."""
+
+
+# a function of a symmetric positive definite matrix, both triangles, that factors it
+Factor = Callable[[sparse.csc_array], Solver]
 
 
 class FactoredStiffness:
@@ -34,15 +47,18 @@ class FactoredStiffness:
         Name of the DOF of a row, for messages.
     remedy : str
         What to do about other motions without strain.
+    factor : function, optional
+        A user's, see `Factor`; SuperLU by default.
 
     Raises
     ------
     InputError
-        More motions without strain than these; the message names DOFs.
+        More motions without strain than these; the message names DOFs. A factor whose solutions
+        are none.
     """
 
     def __init__(self, stiffness: sparse.csc_array, free: NDArray, name: Callable[[int], str],
-                 remedy: str):
+                 remedy: str, factor: Factor | None = None):
         self._kept = np.arange(stiffness.shape[0])
         if free.shape[1]:
             order = linalg.qr(free.T, mode="r", pivoting=True)[1]
@@ -50,7 +66,9 @@ class FactoredStiffness:
             stiffness = stiffness[self._kept][:, self._kept]
         self._factor = None
         if len(self._kept):
-            self._factor = _factorise(stiffness, lambda row: name(int(self._kept[row])), remedy)
+            own = None if factor is None else _of_user(stiffness, factor)
+            self._factor = own or _factorise(stiffness, lambda row: name(int(self._kept[row])),
+                                             remedy)
 
     def solve(self, forces: NDArray) -> NDArray:
         """Displacements (n,) or (n, k) of forces, 0 at pinned DOFs."""
@@ -58,6 +76,45 @@ class FactoredStiffness:
         if self._factor is not None:
             result[self._kept] = self._factor.solve(np.ascontiguousarray(forces[self._kept]))
         return result
+
+
+def _of_user(stiffness: sparse.csc_array, factor: Factor) -> Solver | None:
+    """What a user's function makes of a stiffness; None of one that may be singular.
+
+    SuperLU then says which DOFs are loose.
+    """
+    diagonal = stiffness.diagonal()
+    if not np.all(diagonal > 0):
+        return None
+    try:
+        made = factor(sparse.csc_array(stiffness))
+        force = diagonal * np.random.default_rng(1).standard_normal(len(diagonal))
+        answer = np.asarray(made.solve(np.ascontiguousarray(force[:, None])))
+    except Exception as error:
+        raise InputError(f"factor ended in {type(error).__name__}: {error}; give a function of a "
+                         "sparse matrix whose result has solve(right-hand sides (n, k))") from error
+    if answer.shape != (len(diagonal), 1) or not np.isfinite(answer).all():
+        raise InputError(f"solve() of the factor gives an array of shape {answer.shape}, or "
+                         f"numbers that are not finite: it must give ({len(diagonal)}, 1)")
+    if _softest(_Columns(made), diagonal) <= _SUSPECT:
+        return None
+    summands = abs(stiffness) @ np.abs(answer) + np.abs(force[:, None])
+    if np.abs(stiffness @ answer - force[:, None]).max() > _RESIDUAL * summands.max():
+        raise InputError("the solutions of the factor do not solve the equations: give a function "
+                         "that factors the matrix it is given, of its both triangles")
+    return _Columns(made)
+
+
+class _Columns:
+    """A factor that solves right-hand sides (n,), too."""
+
+    def __init__(self, made: Solver):
+        self._made = made
+
+    def solve(self, forces: NDArray) -> NDArray:
+        """Displacements (n,) or (n, k)."""
+        columns = np.ascontiguousarray(forces.reshape(len(forces), -1))
+        return np.asarray(self._made.solve(columns)).reshape(forces.shape)
 
 
 def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths: NDArray,
@@ -102,10 +159,12 @@ def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: 
 
 
 def _lu(matrix: sparse.csc_array) -> SuperLU:
-    return splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    # relaxed supernodes store zeros; values above SuperLU's own default overflow its histogram
+    return splu(matrix, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, relax=1,
+                options={"SymmetricMode": True})
 
 
-def _softest(factor: SuperLU, diagonal: NDArray) -> float:
+def _softest(factor: Solver, diagonal: NDArray) -> float:
     """Estimate, from above, of the lowest eigenvalue beside a unit diagonal: no pivot is below it.
 
     Pivots themselves take a copy of the factors, as large as these.

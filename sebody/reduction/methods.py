@@ -40,7 +40,7 @@ from sebody.reduction.boundary import Boundary, Items, boundary_of
 from sebody.reduction.clamped import ClampedInterior, canonical_turn
 from sebody.reduction.component import ComponentModes, check_count, static_modes
 from sebody.reduction.constants import with_constants, with_shapes
-from sebody.reduction.factor import is_strainless
+from sebody.reduction.factor import Factor, is_strainless
 from sebody.reduction.free import check_connected, check_free
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.missing import missing_of
@@ -59,7 +59,7 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
            method: str = "craig-bampton", select: Sequence[int] | None = None,
            recover: Sequence[int] | None = None, loads: Mapping[str, ArrayLike] | None = None,
-           residual_modes: bool = False, *, judged: bool = False,
+           residual_modes: bool = False, *, judged: bool = False, factor: Factor | None = None,
            progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
@@ -87,6 +87,9 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         load exact.
     judged : bool
         Note up to which frequencies the modes are good ('craig-bampton', 'guyan', 'rubin').
+    factor : function, optional
+        Factors the stiffness in the place of SuperLU: of a sparse symmetric matrix (n, n), both
+        triangles, an object whose ``solve`` gives the solutions (n, k) of right-hand sides (n, k).
     progress : function of a text, or True, optional
         Is told what takes long, what it will cost, and what costs less; True for lines on standard
         error.
@@ -105,13 +108,16 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         a boundary that leaves a mechanism inside, or loads of another length.
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
+    if factor is not None:
+        inputs.function(factor, "factor", "give a function of a sparse matrix, or leave it out")
     method = inputs.choice(method, "method", METHODS)
     _check_options(method, modes, select, inputs.flag(residual_modes, "residual_modes"))
     watch = watching(progress)
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
-    matrices, interior, static = clamped(fe_model, edge, watch, method)
-    notes = [f"{method} from {matrices[0].shape[0]} DOFs", *edge.notes]
+    matrices, interior, static = clamped(fe_model, edge, watch, method, factor)
+    by = "" if factor is None else f", factored by {getattr(factor, '__name__', 'a user function')}"
+    notes = [f"{method} from {matrices[0].shape[0]} DOFs{by}", *edge.notes]
     free = None
     if method in ("craig-bampton", "guyan"):
         if isinstance(modes, Accuracy):
@@ -123,7 +129,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         component = static.with_vibrations(interior, modes, select)
         left_out = interior.left_out(len(component.omega_squared)) if select is None else 0
     else:
-        free = _FreeModes(edge, *matrices, modes, watch)
+        free = _FreeModes(edge, *matrices, modes, watch, factor)
         component, left_out = free.component(static, interior), free.left_out
     if left_out:
         count = len(component.omega_squared if free is None else free.squares)
@@ -153,7 +159,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
 
 
 def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT,
-            method: str = "craig-bampton"
+            method: str = "craig-bampton", factor: Factor | None = None
             ) -> tuple[tuple[sparse.csc_array, sparse.csc_array], ClampedInterior, ComponentModes]:
     """Stiffness and mass of independent DOFs, the interior, and the constraint modes of a boundary.
 
@@ -169,7 +175,7 @@ def clamped(fe_model: FEModel, edge: Boundary, watch: Watch = SILENT,
     held = edge.means.shape[0] == 0 and method in ("craig-bampton", "guyan")
     check_free(fe_model, ties, stiffness, _HELD if held else 0.0)
     interior = ClampedInterior(stiffness, mass, edge.held, edge.means, ties.rigid, ties.lengths,
-                               ties.name, watch)
+                               ties.name, watch, factor)
     static = static_modes(stiffness, interior, *edge.unit_motions())
     rigid = ties.rigid / ties.lengths[:, None]
     if is_strainless(stiffness, rigid):
@@ -212,9 +218,9 @@ class _FreeModes:
     """
 
     def __init__(self, edge: Boundary, stiffness: sparse.csc_array, mass: sparse.csc_array,
-                 modes: int | Accuracy, watch: Watch):
+                 modes: int | Accuracy, watch: Watch, factor: Factor | None = None):
         self._edge, self._stiffness, self._mass = edge, stiffness, mass
-        free, self.rigid = _free_interior(edge.ties, stiffness, mass, watch)
+        free, self.rigid = _free_interior(edge.ties, stiffness, mass, watch, factor)
         count = (_within(free, modes, watch) if isinstance(modes, Accuracy) else
                  check_count(modes, free, "body has {} elastic modes"))
         self.squares, self.elastic = free.vibrations(count)
@@ -241,15 +247,15 @@ class _FreeModes:
         return replace(static, fixed_interface=shapes @ turn, omega_squared=omega_squared)
 
 
-def _free_interior(ties: Ties, stiffness: sparse.csc_array, mass: sparse.csc_array, watch: Watch
-                   ) -> tuple[ClampedInterior, NDArray]:
+def _free_interior(ties: Ties, stiffness: sparse.csc_array, mass: sparse.csc_array, watch: Watch,
+                   factor: Factor | None = None) -> tuple[ClampedInterior, NDArray]:
     """The free body without momenta, and its rigid motions of unit modal mass."""
     rigid = ties.rigid / ties.lengths[:, None]
-    factor = linalg.cholesky(rigid.T @ (mass @ rigid))
-    rigid = linalg.solve_triangular(factor, rigid.T, trans="T").T
+    root = linalg.cholesky(rigid.T @ (mass @ rigid))
+    rigid = linalg.solve_triangular(root, rigid.T, trans="T").T
     momenta = sparse.csr_array((mass @ rigid).T)
     return ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
-                           ties.lengths, ties.name, watch), rigid
+                           ties.lengths, ties.name, watch, factor), rigid
 
 
 def free_frequencies(fe_model: FEModel, count: int = 6,

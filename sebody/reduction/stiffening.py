@@ -86,7 +86,8 @@ class GeometricStiffness:
     Parameters
     ----------
     of : function
-        G (n, n) of a displacement (n_dofs,).
+        G (k, m, m) of displacements (n_dofs, k) on m combinations (n, m) of the coordinates, or on
+        all coordinates (None).
     basis : (n_dofs, n)
         Shapes of the reduced coordinates.
     stiffness, mass : (n, n)
@@ -99,8 +100,8 @@ class GeometricStiffness:
         Largest rotation, or displacement over size, of displacements (n_dofs, k).
     """
 
-    def __init__(self, of: Callable[[NDArray], NDArray], basis: NDArray, stiffness: NDArray,
-                 mass: NDArray, scale: NDArray, rigid: NDArray,
+    def __init__(self, of: Callable[[NDArray, NDArray | None], NDArray], basis: NDArray,
+                 stiffness: NDArray, mass: NDArray, scale: NDArray, rigid: NDArray,
                  largest: Callable[[NDArray], NDArray]):
         self._of, self._basis, self._largest = of, basis, largest
         self._stiffness, self._held = stiffness, len(scale)
@@ -147,8 +148,7 @@ class GeometricStiffness:
 
     def _each(self, shapes: NDArray) -> NDArray:
         """G (k, n, n) of displacements (n_dofs, k)."""
-        return np.array([self._of(shape) for shape in shapes.T]).reshape(
-            -1, *self._stiffness.shape)
+        return self._of(shapes, None)
 
     def _load_modes(self, loads: NDArray, answers: NDArray, mass: Callable[[NDArray], NDArray]
                     ) -> tuple[NDArray, NDArray]:
@@ -170,7 +170,7 @@ class GeometricStiffness:
         reached = _LARGEST_MOTION / self._largest(shapes @ vibrations)
         amplitudes = vibrations * np.minimum(reached, np.sqrt(_SOFT) * reached.min(initial=np.inf))
         low, modes = self._elastic @ vibrations, shapes[:, self._count:]
-        of_modes = [low.T @ self._of(shape) @ low for shape in modes.T]
+        of_modes = self._of(modes, low)
         return divide(np.array([*(low.T @ of_motions @ low), *of_modes]),
                       amplitudes[self._count:], modes)
 

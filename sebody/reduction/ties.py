@@ -67,6 +67,13 @@ class Ties:
             return first + np.arange(self._dimension)
         return first + self._dimension + np.arange(self._angles)
 
+    def tied_rows(self) -> NDArray:
+        """FE DOFs of the translations of the nodes of rigid faces."""
+        rows = [self._model.rows[list(face.nodes), :self._dimension].ravel()
+                for face in self._faces]
+        rows = np.concatenate(rows) if rows else np.zeros(0, dtype=int)
+        return rows[rows >= 0]
+
     def name(self, row: int) -> str:
         """The independent DOF as messages name it."""
         model = self._model
@@ -129,7 +136,9 @@ class Ties:
             values.append(moves[there])
         entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
         shape = (len(self.independent), self.size)
-        return sparse.csc_array(sparse.coo_array(entries, shape=shape))
+        tie = sparse.csc_array(sparse.coo_array(entries, shape=shape))
+        tie.indices, tie.indptr = tie.indices.astype(np.int32), tie.indptr.astype(np.int32)
+        return tie
 
     def _rigid(self) -> tuple[NDArray, NDArray]:
         """`lengths` and `rigid`."""

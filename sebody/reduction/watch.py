@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable
+from time import monotonic
 from typing import Any
 
 from sebody.basics import inputs
@@ -21,25 +22,33 @@ class Watch:
 
 
 SILENT = Watch()
+_QUIET = 10.0       # seconds without a line in a file
 
 
 class Terminal(Watch):
-    """Remarks on standard error; on a terminal stages, too, on one line that changes."""
+    """Remarks on standard error, and stages: on a terminal on one line that changes.
+
+    In a file a stage has a line of its own if none was written for ten seconds.
+    """
 
     def __init__(self) -> None:
         self._shows = sys.stderr.isatty()
         self._width = 0
+        self._written = monotonic()
 
     def stage(self, text: str) -> None:
-        """Replace the line."""
+        """Replace the line, or write another one."""
         if self._shows:
             print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
             self._width = len(text)
+        elif monotonic() - self._written > _QUIET:
+            self.remark(text)
 
     def remark(self, text: str) -> None:
         """A line of its own."""
         self.close()
         print(text, file=sys.stderr, flush=True)
+        self._written = monotonic()
 
     def close(self) -> None:
         """Take the line of stages away."""

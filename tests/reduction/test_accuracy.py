@@ -7,7 +7,7 @@ from scipy import linalg
 
 from sebody.basics.errors import InputError
 from sebody.fem import Section, frame, hexahedral_block, planar_beam
-from sebody.reduction import Accuracy, RigidFace, clamped, reduce
+from sebody.reduction import Accuracy, RigidFace, clamped, reduce, watch
 from sebody.reduction.accuracy import stiffness_errors
 from sebody.reduction.boundary import boundary_of
 from sebody.reduction.methods import clamped as clamped_body
@@ -190,3 +190,14 @@ def test_the_cost_is_told_before_it_is_paid():
                for text in said)
     with pytest.raises(InputError, match="progress is 3: give a function of a text, or True"):
         reduce(model, items, 2, progress=3)
+
+
+def test_stages_in_a_file(monkeypatch, capsys):
+    """Long work says what it does where standard error is no terminal, too, but not every step."""
+    now = [0.0]
+    monkeypatch.setattr(watch, "monotonic", lambda: now[0])
+    told = watch.Terminal()
+    for second in range(0, 40, 4):
+        now[0] = float(second)
+        told.stage(f"{second} modes")
+    assert capsys.readouterr().err == "12 modes\n24 modes\n36 modes\n"

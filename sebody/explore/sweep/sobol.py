@@ -1,6 +1,7 @@
 """Sobol's indices of a sweep: which parameter the outputs vary with."""
 
 import warnings
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,8 @@ def report(found: dict[str, NDArray], names: list[str]) -> str:
 def _indices(function: Any, dimensions: int, n: int, seed: int) -> None:
     from scipy.stats import sobol_indices, uniform
 
+    # SciPy renamed the argument in version 1.15
+    named = "rng" if "rng" in signature(sobol_indices).parameters else "random_state"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        sobol_indices(func=function, n=n, dists=[uniform()] * dimensions, rng=seed)
+        sobol_indices(func=function, n=n, dists=[uniform()] * dimensions, **{named: seed})
