@@ -16,6 +16,7 @@ from sebody.assembly.numbering import record_counts
 from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, PREPARE, RECORD, TRANSPOSED
+from sebody.contract.read_numbers import FORCE, LOAD, NOW, TOTAL
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
@@ -23,7 +24,7 @@ from sebody.gradients.linear import Linear
 from sebody.gradients.link_products import place_weights, pull_back_bars
 from sebody.gradients.products import Products, prepare, turn
 from sebody.quantities.reading import evaluate_loaded, play_back
-from sebody.quantities.symbols import FORCE, LOAD, NOW, TOTAL, NoTape
+from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.results.tapes import States
@@ -66,10 +67,12 @@ class Followed:
         self.run, self.quantity = run, quantity
         self.linear, self.history = linear, history
         states = States(run.model, run.numbering, run.system, run.state, history.rows[0])
+        if states.is_inside(quantity):
+            raise NoTape("motions inside bodies")
         states.put(quantity)
         kinds = {kind for kind, _ in states.tape.inputs}
         if not kinds <= DIFFERENTIATED:
-            raise NoTape("energies, residuals and motions inside bodies")
+            raise NoTape("energies and residuals")
         self.kinematic = not kinds & {FORCE, TOTAL}
         self.products: Products | None = None
         if not self.kinematic:

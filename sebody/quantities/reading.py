@@ -15,6 +15,7 @@ from sebody.assembly.motions import Motions
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY as ENERGIES
 from sebody.contract.layout import OK, RESIDUAL, VELOCITY
+from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, MOTION, NOW, RESIDUE, TOTAL
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import assemble, run_kernels, run_part, set_loads
 from sebody.engine.state import State
@@ -33,7 +34,6 @@ from sebody.quantities.expressions import (
     SUM,
     Tape,
 )
-from sebody.quantities.symbols import ENERGY, FORCE, LOAD, MOTION, NOW, RESIDUE, TOTAL
 
 BODY = 6                # numbers of a body in Reading.bodies
 

@@ -9,15 +9,12 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
 from sebody.contract.layout import ENERGIES, RECORD
+from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, RESIDUE, TOTAL
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 from sebody.quantities.expressions import Number, Tape
 from sebody.quantities.numbers import Numbers
-
-# kinds of numbers: of the recorded row, forces of elements, their sums on coordinates, energies,
-# largest residuals of constraints, loads, and motions of bodies
-NOW, FORCE, TOTAL, ENERGY, RESIDUE, LOAD, MOTION = range(7)
 
 
 class NoTape(Exception):
@@ -33,12 +30,12 @@ class Symbols(Numbers):
     state : State
         Of a model, for sizes.
     tape : Tape
-    start : (numbers of `layout.RECORD`,)
-        The state at the start.
+    start : (numbers of `layout.RECORD`,), optional
+        The state at the start, where it is the same in all runs.
     """
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State,
-                 tape: Tape, start: NDArray):
+                 tape: Tape, start: NDArray | None):
         super().__init__(model, numbering)
         self.system, self.state, self.tape, self.start = system, state, tape, start
         self._starts = {name: own.start for name, own in
@@ -49,6 +46,8 @@ class Symbols(Numbers):
         return self.tape.read(NOW, self._starts[part] + k)
 
     def started(self, k: int) -> float:
+        if self.start is None:
+            raise NoTape("what depends on the start")
         return float(self.start[self._starts["frames"] + k])
 
     def multiplier(self, k: int) -> Number:

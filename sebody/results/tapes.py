@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,13 +12,15 @@ from sebody.assembly.motions import Motions, motions
 from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import InputError
 from sebody.contract.layout import MOTION as ROW
+from sebody.contract.read_numbers import MOTION, NOW
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 from sebody.quantities.algebra import back, dot
 from sebody.quantities.expressions import Number, Tape, root
+from sebody.quantities.inside import FENodes
 from sebody.quantities.reading import Reading, reading
-from sebody.quantities.symbols import MOTION, NOW, NoTape, Symbols
+from sebody.quantities.symbols import NoTape, Symbols
 from sebody.quantities.table import find
 from sebody.results import naming, nodal
 from sebody.results.recording import Recording
@@ -29,12 +31,12 @@ class States(Symbols):
 
     Parameters
     ----------
-    start : (numbers of `layout.RECORD`,)
-        The state at the start.
+    start : (numbers of `layout.RECORD`,), optional
+        The state at the start, where it is the same in all runs.
     """
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State,
-                 start: NDArray):
+                 start: NDArray | None = None):
         super().__init__(model, numbering, system, state, Tape(), start)
         self.recording = Recording(model, numbering, system, state, state.now[None].copy(), 0.0)
         self.bodies: dict[str, tuple[Motions, int]] = {}
@@ -93,6 +95,16 @@ class States(Symbols):
             self.tape.put(number)
         return shape_of(value)
 
+    def is_inside(self, name: str) -> bool:
+        """Whether a quantity is one of FE nodes: their tapes are long."""
+        owner = naming.split(self.recording, name)[0].rpartition(".")[0]
+        return owner not in self.model.nodes and owner in FENodes(self)
+
+    @property
+    def kinds(self) -> set[int]:
+        """Kinds of the numbers that are read, as of `contract.read_numbers`."""
+        return {kind for kind, _ in self.tape.inputs}
+
     def places(self) -> NDArray | None:
         """Places of all outputs in the recorded row, where they are nothing but these."""
         kinds = {place: key for key, place in self.tape.inputs.items()}
@@ -138,17 +150,3 @@ def shape_of(value: Any) -> tuple[int, ...]:
     if not isinstance(value, Sequence):
         return ()
     return len(value), *(shape_of(value[0]) if value else ())
-
-
-def tape_of(model: Mechanism, numbering: Numbering, system: System, state: State, start: NDArray,
-            names: Iterable[str]) -> tuple[Reading, list[tuple[int, ...]]]:
-    """Some quantities for compiled code, and the shape of each in a state.
-
-    Raises
-    ------
-    InputError, NoTape
-        See `States.of`.
-    """
-    made = States(model, numbering, system, state, start)
-    shapes = [made.put(name) for name in names]
-    return made.reading(), shapes

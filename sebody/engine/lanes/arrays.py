@@ -105,14 +105,24 @@ class Columns(Arrays):
 
     ==================  ============================================================================
     places              (c,) which numbers of `State.now`, ascending
-    rows                (records, c) their values
+    rows                (records, c + e) their values, and those of what is evaluated
     every               (1,) grid steps between records
+    evaluated           (e, 2) further numbers: kind as of `contract.read_numbers`, and place
+    batches             (b, 3) batches whose forces are evaluated: number, first element, elements
+    needs               (kinds,) one for each kind of numbers that is evaluated
+    shown               places of `State.now` that are needed of members that are alone
+    loads               loads before an evaluation
     ==================  ============================================================================
     """
 
     places: NDArray
     rows: NDArray
     every: NDArray
+    evaluated: NDArray
+    batches: NDArray
+    needs: NDArray
+    shown: NDArray
+    loads: NDArray
 
 
 def empty(*shape: int) -> NDArray:

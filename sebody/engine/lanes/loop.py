@@ -26,6 +26,7 @@ from sebody.engine.lanes.apart import (
     show,
     take_apart,
 )
+from sebody.engine.lanes.evaluated import write_evaluated
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.guard import contact_too_fast
 from sebody.engine.lanes.matrix import factorize
@@ -46,7 +47,7 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
     """Run until `last_grid`, or until no member is left that has not given up; the step reached."""
     control = state.control
     if control.grid == 0:
-        _write(state, apart, record)
+        _write(system, state, scratch, apart, record)
     while control.grid < last_grid:
         if every(control.reason == GAVE_UP):
             return control.grid
@@ -65,7 +66,7 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
         if some(control.reason == APART):
             run_apart(state, apart, alone.J, scheme, dense)
         if control.grid % record.every[0] == 0:
-            _write(state, apart, record)
+            _write(system, state, scratch, apart, record)
     return control.grid
 
 
@@ -174,15 +175,17 @@ def _accept(system, state):
 
 
 @compiled(forceinline=True)
-def _write(state, apart, record):
+def _write(system, state, scratch, apart, record):
     """Store the numbers of the accepted state that are asked for."""
     row = state.control.recorded
     if some(state.control.reason == APART):
-        show(state, apart, record.places)
+        show(state, apart, record.shown)
     state.now[RECORD_T] = spread(state.clock.time)
     state.now[RECORD_ITERATIONS] = state.control.iterations
     for k in range(record.places.size):
         record.rows[row, k] = state.now[record.places[k]]
+    if record.evaluated.shape[0] > 0:
+        write_evaluated(system, state, scratch, record, row)
     state.control.recorded = row + 1
 
 

@@ -22,6 +22,8 @@ from sebody.explore.ensembles.groups import make, new_groups, run_on
 from sebody.explore.ensembles.matrices import address_together, new_together
 from sebody.explore.ensembles.outputs import folds_of
 from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled, module_in_lanes
+from sebody.quantities.expressions import Tape
+from sebody.quantities.reading import reading
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
 from sebody.runs.schemes import generalized_alpha
 
@@ -72,7 +74,8 @@ def compile_groups() -> None:
     given = Beginning(model=floats, floats=floats, copied=pairs, restart=places, slots=places,
                       ends=places, components=places, slopes=floats, kept=places, **scalars,
                       **{f"{name}_built": own for name, own in scalars.items()})
-    groups = new_groups(0, given_to_loop, given, places, folds_of((), (), ()))
+    groups = new_groups(0, given_to_loop, given, places, folds_of(
+        (), (), (), (), reading(Tape()), pairs[:0], 1))
     kinds = tuple(map(typeof, (groups, 0, generalized_alpha(), False, 0, 0)))
     way().compile_for(run_on, kinds)
     way().compile_for(make, (*map(typeof, (groups, pairs + 0.0, generalized_alpha(), 0.0, False, 0,
@@ -87,7 +90,8 @@ def _given_to_loop() -> tuple:
     room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
     scratch = Scratch(*(empty(1) for _ in range(4)), places, places)
     alone = Alone(system, state, room[0], room, places, places, room)
-    columns = Columns(places, empty(1, 1), places)
+    columns = Columns(places, empty(1, 1), places, np.zeros((0, 2), dtype=np.int64),
+                      np.zeros((0, 3), dtype=np.int64), places, places, empty(1))
     members = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)
     apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), members[1], 0)
     return (*members, scratch, alone, new_together(members[1], empty(1)), apart, columns)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import RECORD_T
 from sebody.engine.arrays import Arrays
+from sebody.quantities.reading import play
 
 MAXIMUM, MINIMUM, RMS, INTEGRAL, FINAL, AT, SOFT_MAXIMUM = range(7)
 SEEN, LAST, LENGTH, FOUND = range(4)    # states so far, time of the last, stretch, whether a value
@@ -23,7 +24,13 @@ class Folds(Arrays):
     kinds, numbers,     (n,) of each output, as of `fold`
     norms
     ends                (n + 1, 2) where its columns and its values begin
-    columns             of all
+    columns             of all: of recorded numbers or, where `taped` is one, of the tape's outputs
+    taped               (n,)
+    inputs              (i, 2) numbers that a tape reads: place on it, and column of the record
+    steps, factors,     of the tape, see `quantities.reading`
+    weights, outputs
+    tapes               (members, numbers) its numbers
+    made                (states, outputs, members) what it gives
     kept, before,       (values, members) as of `fold`
     largest
     facts               (n, 4)
@@ -35,6 +42,14 @@ class Folds(Arrays):
     norms: NDArray
     ends: NDArray
     columns: NDArray
+    taped: NDArray
+    inputs: NDArray
+    steps: NDArray
+    factors: NDArray
+    weights: NDArray
+    outputs: NDArray
+    tapes: NDArray
+    made: NDArray
     kept: NDArray
     before: NDArray
     largest: NDArray
@@ -142,6 +157,9 @@ def forget(folds):
     for o in range(folds.facts.shape[0]):
         for k in range(folds.facts.shape[1]):
             folds.facts[o, k] = 0.0
+    for member in range(folds.tapes.shape[0]):
+        for k in range(1, folds.tapes.shape[1]):
+            folds.tapes[member, k] = 0.0
 
 
 @compiled
@@ -150,12 +168,35 @@ def fold_all(folds, count, table):
     t = np.empty(count)
     for k in range(count):
         t[k] = table[k, RECORD_T, 0]
+    if folds.outputs.size > 0:
+        _play(folds, count, table)
     for o in range(folds.kinds.size):
-        columns = folds.columns[folds.ends[o, 0]:folds.ends[o + 1, 0]]
-        first, end = folds.ends[o, 1], folds.ends[o + 1, 1]
-        fold(folds.kinds[o], folds.numbers[o], folds.norms[o], t, table, columns,
-             folds.kept[first:end], folds.before[first:end], folds.largest[first:end],
-             folds.facts[o])
+        if folds.taped[o] == 1:
+            _fold_one(folds, o, t, folds.made)
+        else:
+            _fold_one(folds, o, t, table)
+
+
+@compiled
+def _fold_one(folds, o, t, table):
+    """Take in the states of an output."""
+    columns = folds.columns[folds.ends[o, 0]:folds.ends[o + 1, 0]]
+    first, end = folds.ends[o, 1], folds.ends[o + 1, 1]
+    fold(folds.kinds[o], folds.numbers[o], folds.norms[o], t, table, columns,
+         folds.kept[first:end], folds.before[first:end], folds.largest[first:end], folds.facts[o])
+
+
+@compiled
+def _play(folds, count, table):
+    """Play the tape in the first states of a table, of every member."""
+    for k in range(count):
+        for member in range(folds.tapes.shape[0]):
+            numbers = folds.tapes[member]
+            for i in range(folds.inputs.shape[0]):
+                numbers[folds.inputs[i, 0]] = table[k, folds.inputs[i, 1], member]
+            play(folds.steps, folds.factors, folds.weights, numbers)
+            for n in range(folds.outputs.size):
+                folds.made[k, n, member] = numbers[folds.outputs[n]]
 
 
 @compiled(nogil=True)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.contract.counts import whole_vectors
 from sebody.contract.layout import AT_CONSTANTS, RECORD_T
+from sebody.contract.read_numbers import NOW
 from sebody.engine.lanes import loop, samples
 from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, fill, in_lanes, numbers
@@ -35,6 +36,7 @@ from sebody.kernels.lanes.straight import (
     write_matrix_address,
     write_shared_address,
 )
+from sebody.results.tapes import States
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second
@@ -64,20 +66,34 @@ class Lanes:
         self._set_outputs(outputs, forms)
         self._groups, self._kept_alive = self._new_groups(buffer)
         self._reason = self._groups.state.control["reason"]     # looked up once: it takes long
-        self._rows = np.empty(self._groups.record.rows.shape)
+        self._rows = np.empty((len(self._record.rows), len(self._columns)))
         self._has_begun = False         # a member: then its scalars are known
         self._changes: NDArray          # of the members that have begun
         self._courses: list[Course] = []
 
     def _set_outputs(self, outputs: Mapping[str, Output], forms: Mapping[str, Form]) -> None:
-        """Tell outputs that are folds of recorded numbers from all others."""
-        self._columns = _columns(forms, self.copies.image.template.state.now.size)
-        self._forms = {name: form if form.columns is None else form._replace(
-            columns=np.searchsorted(self._columns, form.columns)) for name, form in forms.items()}
-        self._evaluated = not all(form.kinematic for form in forms.values())
-        self._folded = {name: one for name, one in outputs.items()
-                        if one.kind != "history" and forms[one.quantity].columns is not None}
-        self._others = {name: one for name, one in outputs.items() if name not in self._folded}
+        """Tell outputs that are folds of recorded numbers, or of what a tape gives, from others."""
+        one = self.copies.image.template
+        folded = {name: o for name, o in outputs.items()
+                  if o.kind != "history" and (forms[o.quantity].columns is not None
+                                              or forms[o.quantity].in_lanes)}
+        self._folded, self._others = folded, {
+            name: o for name, o in outputs.items() if name not in folded}
+        self._forms, self._evaluated = forms, not all(
+            forms[o.quantity].kinematic for o in self._others.values())
+        states, self._tape_columns = States(one.model, one.numbering, one.system, one.state), {}
+        for o in folded.values():
+            if forms[o.quantity].columns is None and o.quantity not in self._tape_columns:
+                first = len(states.tape.outputs)
+                states.put(o.quantity)
+                self._tape_columns[o.quantity] = np.arange(first, len(states.tape.outputs))
+        self._tape, count = states.reading(), one.state.now.size
+        reads = self._tape.inputs
+        self._read_now = reads[reads[:, 1] == NOW]
+        self._read_else = reads[reads[:, 1] != NOW]
+        own = [form.columns for form in forms.values() if form.columns is not None]
+        self._columns = np.arange(count) if self._others else np.unique(np.concatenate(
+            [[RECORD_T], self._read_now[:, 2], *own]))
 
     def _new_groups(self, buffer: NDArray) -> tuple[Groups, list]:
         """The arrays of all members, and what else their addresses lead to."""
@@ -95,7 +111,7 @@ class Lanes:
         apart, runs_apart = new_apart(
             (one.system, one.state), image.offsets, own, self._numbers, state,
             address_of_loop(one.system, one.state, copies.scheme))
-        record = self._new_record()
+        self._record = record = self._new_record()
         made_alone = alone(copies, self._numbers)
         if copies.sampling.samples:
             apart.routines[1] = samples.address((system, state, scratch, made_alone, apart))
@@ -107,16 +123,30 @@ class Lanes:
 
     def _new_record(self) -> Columns:
         """Room for recorded states."""
-        every = self.copies.image.template.every
-        stretch = max(1, min(self._last // every, MOST_NUMBERS // len(self._columns)))
-        return Columns(places=self._columns, rows=empty(stretch + 1, len(self._columns)),
-                       every=np.array([every]))
+        one, tape = self.copies.image.template, self._tape
+        every, width = one.every, len(self._columns) + len(self._read_else)
+        stretch = max(1, min(self._last // every, MOST_NUMBERS // width))
+        return Columns(
+            places=self._columns, rows=empty(stretch + 1, width), every=np.array([every]),
+            evaluated=np.ascontiguousarray(self._read_else[:, 1:]), batches=tape.batches,
+            needs=tape.needs,
+            shown=np.arange(one.state.now.size) if len(self._read_else) else self._columns,
+            loads=empty(one.state.loads.size))
 
     def _new_folds(self) -> Folds:
         """Room for what outputs are made of."""
-        read = [self._forms[one.quantity] for one in self._folded.values()]
-        return folds_of(list(self._folded.values()), [form.shape for form in read],
-                        [form.columns for form in read])
+        outputs = list(self._folded.values())
+        read = [self._forms[one.quantity] for one in outputs]
+        columns = [self._tape_columns[one.quantity] if form.columns is None else
+                   np.searchsorted(self._columns, form.columns)
+                   for one, form in zip(outputs, read, strict=True)]
+        now = np.searchsorted(self._columns, self._read_now[:, 2])
+        further = len(self._columns) + np.arange(len(self._read_else))
+        inputs = np.column_stack([np.concatenate([self._read_now, self._read_else])[:, 0],
+                                  np.concatenate([now, further])])
+        return folds_of(outputs, [form.shape for form in read], columns,
+                        [form.columns is None for form in read], self._tape,
+                        np.ascontiguousarray(inputs), len(self._record.rows))
 
     def _write_constants(self) -> tuple[NDArray, list]:
         """Write straight code of all bodies.
@@ -274,13 +304,6 @@ class Lanes:
     def time(self) -> float:
         """Time that the runs reached that were made last."""
         return float(self._reached * self._groups.state.clock.step)
-
-
-def _columns(forms: Mapping[str, Form], count: int) -> NDArray:
-    """Which numbers of a state are recorded: all, if a quantity is computed from them."""
-    if any(form.columns is None for form in forms.values()):
-        return np.arange(count)
-    return np.unique(np.concatenate([[RECORD_T], *(form.columns for form in forms.values())]))
 
 
 def _with_kernels(system: System, image: Image, constants: NDArray, rows: Rows) -> System:

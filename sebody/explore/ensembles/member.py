@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T
+from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, TOTAL
 from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
@@ -29,8 +30,11 @@ from sebody.engine.system import System
 from sebody.explore.ensembles import beginning
 from sebody.explore.ensembles.outputs import Fold, Output
 from sebody.explore.ensembles.start_values import Image
-from sebody.results.naming import look_up
+from sebody.quantities.symbols import NoTape
+from sebody.results.naming import look_up, split
+from sebody.results.nodal import MOTIONS
 from sebody.results.recording import Recording
+from sebody.results.tapes import States
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
@@ -38,6 +42,7 @@ from sebody.runs.simulation import Simulation
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
 MOST_STEPS = 1_000_000_000  # in one call of the loop
 CHUNK = 0.2                 # seconds in the loop until a thread looks whether it is to stop
+IN_LANES = {NOW, FORCE, TOTAL, ENERGY, LOAD}    # kinds of numbers that eight members give
 Stop = Callable[[], bool]
 
 
@@ -191,6 +196,7 @@ class Form(NamedTuple):
     shape: tuple[int, ...]      # in a state
     kinematic: bool             # from recorded states alone
     columns: NDArray | None     # of recorded rows, where it is nothing but these
+    in_lanes: bool = False      # whether its tape is played for eight members
 
 
 class Course:
@@ -293,40 +299,23 @@ def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Fo
     InputError
         A quantity that the model does not have.
     """
-    found = {}
-    rows = simulation.rows.stretches[0]
-    for quantity in {o.quantity for o in outputs.values()}:
+    return {quantity: _form(simulation, quantity)
+            for quantity in {o.quantity for o in outputs.values()}}
+
+
+def _form(simulation: Simulation, quantity: str) -> Form:
+    parts = simulation.model, simulation.numbering, simulation.system, simulation.state
+    recording = Recording(*parts, simulation.rows.stretches[0], 0.0)
+    whole, _ = split(recording, quantity)
+    states = States(*parts)
+    if not states.is_inside(quantity):
         try:
-            values = look_up(_States(simulation.model, simulation.numbering, None, None, rows, 0.0),
-                             quantity)
-            found[quantity] = Form(values.shape[1:], True, _columns(values, rows))
-        except _NeedsElements:
-            values = look_up(Recording(simulation.model, simulation.numbering, simulation.system,
-                                       simulation.state, rows, 0.0), quantity)
-            found[quantity] = Form(values.shape[1:], False, None)
-    return found
-
-
-def _columns(values: NDArray, rows: NDArray) -> NDArray | None:
-    """Which columns of some rows the values are, if they are a view of them."""
-    if not np.shares_memory(values, rows) or values.strides[0] != rows.strides[0]:
-        return None
-    places = np.arange(rows.shape[1])
-    first, given = (x.__array_interface__["data"][0] for x in (values, rows))
-    view = np.lib.stride_tricks.as_strided(places[(first - given) // rows.itemsize:],
-                                           values.shape[1:], values.strides[1:])
-    return view.ravel()
-
-
-class _NeedsElements(Exception):
-    """A quantity that elements have to be evaluated for."""
-
-
-class _States(Recording):
-    """Recorded states without elements."""
-
-    def _refuse(self) -> NDArray:
-        raise _NeedsElements
-
-    energies = forces = balance = powers = constraint_residuals = counters = gravity = property(
-        _refuse)
+            shape = states.put(quantity)
+            return Form(shape, states.kinds <= {NOW}, states.places(), states.kinds <= IN_LANES)
+        except NoTape:
+            pass
+    shape = look_up(recording, quantity).shape[1:]
+    motion = whole.rpartition(".")[2]
+    if states.is_inside(quantity):
+        return Form(shape, motion in MOTIONS, None)
+    return Form(shape, motion == "rotation", None)      # a rotation vector

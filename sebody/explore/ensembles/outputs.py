@@ -14,6 +14,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.counts import MEMBERS
 from sebody.explore.ensembles.folding import FACTS, FOUND, Folds, fold, write_values
+from sebody.quantities.reading import Reading
 
 # as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
@@ -135,7 +136,8 @@ class Room(NamedTuple):
 
 
 def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
-             columns: Sequence[NDArray]) -> Folds:
+             columns: Sequence[NDArray], taped: Sequence[bool], tape: Reading, inputs: NDArray,
+             states: int) -> Folds:
     """Room for outputs of all members of a group.
 
     Parameters
@@ -143,7 +145,14 @@ def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
     shapes : sequence of tuple
         Of the quantity of each in a state.
     columns : sequence of (c,)
-        Which of the recorded numbers its values are.
+        Which of the recorded numbers its values are, or of the outputs of the tape.
+    taped : sequence of bool
+        Whether they are the latter.
+    tape : Reading
+    inputs : (i, 2)
+        Places on the tape of numbers that it reads, and their columns of the record.
+    states : int
+        Most that are recorded at a time.
     """
     kinds, numbers, norms = zip(*map(_asked, outputs), strict=True) if outputs else ((), (), ())
     sizes = [(len(own), output.size(shape))
@@ -151,6 +160,9 @@ def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
     ends = np.cumsum([(0, 0), *sizes], axis=0)
     return Folds(np.array(kinds, np.int64), np.array(numbers, float), np.array(norms, bool), ends,
                  np.concatenate([np.zeros(0, np.int64), *columns]),
+                 np.array(taped, dtype=np.int64), inputs, tape.steps, tape.factors, tape.weights,
+                 tape.outputs, np.tile(tape.numbers, (MEMBERS, 1)),
+                 np.zeros((states, len(tape.outputs), MEMBERS)),
                  *np.zeros((3, ends[-1, 1], MEMBERS)), np.zeros((len(outputs), FACTS)))
 
 
