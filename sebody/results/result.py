@@ -24,6 +24,7 @@ from sebody.results.least_norm import arm
 from sebody.results.quantities import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import unpacked, write
+from sebody.results.static_summary import is_static, static_lines
 from sebody.results.vtk_series import save_vtk
 
 LABELS = 21             # columns of the labels of a summary
@@ -253,8 +254,11 @@ class Result(Recording):
         return table(("run", ""), [(name.strip(), value.strip()) for name, _, value in lines])
 
     def summary(self) -> str:
-        """A few lines: steps, iterations, time, balances, works, changes of the initial state."""
-        lines = [
+        """A few lines: steps, iterations, time, balances, works, changes of the initial state.
+
+        Of an equilibrium load steps, iterations and the largest force out of balance.
+        """
+        lines = static_lines(self) if is_static(self) else [
             f"unknowns             {self.numbering.free}",
             f"steps                {self.steps} ({self.cuts} rejected), to t = {self.t[-1]:.6g}",
             f"iterations per step  {self.iterations_per_step:.2f} "
@@ -264,14 +268,15 @@ class Result(Recording):
             f"momentum at the end  {_vector(self['momentum'][-1])}, moment "
             f"{_vector(self['angular_momentum'][-1])}",
         ]
-        if self.numbering.multipliers:
+        if self.numbering.multipliers and not is_static(self):
             lines.append(f"constraints          largest residual "
                          f"{self['constraints.position'].max():.1e}, of their rates "
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"normal forces        of {text}" for text in normal_forces(self.model)]
         laws = {load.name for load in self.model.loads if load.law is not None}     # of none
-        lines += [f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
-                  for k, name in enumerate(self.numbering.port_names) if name not in laws]
+        lines += [] if is_static(self) else [
+            f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
+            for k, name in enumerate(self.numbering.port_names) if name not in laws]
         if self.stability:
             lines.append(f"stability            {self.stability}")
         if self.error is not None:

@@ -25,6 +25,7 @@ def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]
     """Tangent stiffness in axes that rotate with the spin, and the residual."""
     stiffness = turning(run, spin)[2] if spin.rotates else derivative(run, 0.0, 0.0, 1.0)
     system, state = run.arrays_of_loop
+    state.control.iterations += 1
     residual = state.residual.copy()
     to_body_axes(system, state.frames, residual, False)
     return csc_matrix(stiffness), residual[:run.numbering.free]

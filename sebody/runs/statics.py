@@ -13,6 +13,7 @@ from sebody.engine.evaluate import set_loads
 from sebody.model.model import Model
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
+from sebody.results.static_summary import static_residuals
 from sebody.runs.loading import CHOICES, Loading
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import pace
@@ -120,6 +121,7 @@ def _result(run: Simulation, path: Loading) -> Result:
     results = run.result()
     results.stability = stability
     results.forces = _forces(run, results.unique_rows, path)
+    results.constraint_residuals = static_residuals(results)
     return results
 
 
