@@ -167,7 +167,7 @@ class Loading:
         Raises
         ------
         SimulationError
-            It is none of the structure.
+            Only the model has it, not the structure.
         """
         self._refuse_folded(target)
         stiffness = Stiffness(self.run, tangent, self._unit)
