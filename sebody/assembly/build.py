@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.axes import frames
 from sebody.assembly.batches import Batches, make_batches, starts
-from sebody.assembly.close_rows import Grid, given_to_steps
+from sebody.assembly.close_rows import Grid, given_to_steps, series_given_to_steps
 from sebody.assembly.contracts import check_joints
 from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
@@ -57,13 +57,14 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
     time_functions, jumps = given_to_steps(numbering, grid)
+    series = series_given_to_steps(numbering, grid)
     ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs,
-                        numbering.series)
+                        series.values())
     slots = own.system["slot_unknowns"].size
     system = System(
         shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
                          LANES * slots, int(own.system["width"].max()) ** 2),
-        **own.system, **ports, **series_arrays(numbering.series, numbering.ports),
+        **own.system, **ports, **series_arrays(numbering.series, numbering.ports, series),
         links=Links(arm_vectors=vectors, **own.links),
         control=control_arrays(model, numbering, ports["table_at"]),
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),

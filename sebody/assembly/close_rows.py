@@ -17,6 +17,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.assembly.numbering import Numbering
+from sebody.io.load_series import LoadSeries, Pieces
+from sebody.model.histories import of_columns
+from sebody.model.parts import Element
 from sebody.model.time_functions import TimeFunction
 
 # parts of an output interval at which levels begin and end: longer than restarts look ahead
@@ -93,6 +96,34 @@ def given_to_steps(numbering: Numbering, grid: Grid | None
         for port in np.flatnonzero(numbering.forced):
             time_functions[port], jumps[port] = of_steps(time_functions[port], jumps[port], grid)
     return time_functions, jumps
+
+
+def series_given_to_steps(numbering: Numbering, grid: Grid | None) -> dict[Element, Pieces]:
+    """Pieces of the series of all loads, with a grid for steps; loads of one series share them.
+
+    All columns of a series have the same rows, so the same stretches of close ones.
+    """
+    made: dict[LoadSeries, Pieces] = {}
+    for load in numbering.series:
+        assert load.series is not None
+        if load.series not in made:
+            made[load.series] = _pieces_of_steps(load.series, grid)
+    return {load: made[load.series] for load in numbering.series if load.series is not None}
+
+
+def _pieces_of_steps(series: LoadSeries, grid: Grid | None) -> Pieces:
+    pieces = series.pieces
+    if grid is None:
+        return pieces
+    columns = of_columns(series)
+    if stretches(columns[0], grid) is None:
+        return pieces
+    given = [of_steps(one, pieces.jumps.tolist(), grid) for one in columns]
+    first, jumps = given[0]
+    terms = pieces.coefficients.shape[1]
+    return Pieces(np.array(first.times), np.stack(
+        [one.polynomials()[:, :terms] for one, _ in given], axis=2), np.array(first.corners),
+        np.array(jumps))
 
 
 def of_steps(time_function: TimeFunction, jumps: Sequence[float], grid: Grid

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.contract.layout import INPUT
 from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL, SERIES
+from sebody.io.load_series import Pieces
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
@@ -61,8 +62,8 @@ def series_of(model: Mechanism, ports: int) -> dict[Element, int]:
     return dict(zip(loads, places, strict=False))
 
 
-def series_arrays(series: Mapping[Element, int], ports: Mapping[Element | Superelement, int]
-                  ) -> dict[str, NDArray]:
+def series_arrays(series: Mapping[Element, int], ports: Mapping[Element | Superelement, int],
+                  pieces_of: Mapping[Element, Pieces]) -> dict[str, NDArray]:
     """The members of `System` for series of loads; `series` has the places of their amplitudes.
 
     Loads that have one series share its table.
@@ -70,7 +71,7 @@ def series_arrays(series: Mapping[Element, int], ports: Mapping[Element | Supere
     rows, known = [], {}
     times, values = [np.zeros(0)], [np.zeros(0)]
     for load, at in series.items():
-        pieces = load.series.pieces
+        pieces = pieces_of[load]
         if load.series not in known:
             known[load.series] = sum(map(len, times)), sum(map(len, values))
             times.append(pieces.times)
@@ -87,23 +88,24 @@ def _jumps(element: Element) -> list[float]:
     if element.time_function is None:
         return []
     if element.series is not None:
-        return [*element.series.pieces.jumps.tolist(), *element.time_function.abrupt(0)]
+        return element.time_function.abrupt(0)      # and those of the series, see `port_arrays`
     if element.function is not None:        # of its corners: what it does there is not known
         return list(element.time_function.corners)
     return element.time_function.abrupt(2 if element.multipliers else 0)
 
 
 def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, int, int, float]],
-                jumps: list[list[float]], inputs: dict[int, int], series: Iterable[Element]
+                jumps: list[list[float]], inputs: dict[int, int], series: Iterable[Pieces]
                 ) -> dict[str, NDArray]:
     """The members of `System` for time functions of ports and for prescribed coordinates.
 
-    `inputs` are the places in `State.frames` of ports that are inputs, `series` loads with a
-    series.
+    `inputs` are the places in `State.frames` of ports that are inputs, `series` those of
+    loads.
     """
-    jumping = {t for times in jumps for t in times}
+    series = list(series)
+    jumping = {t for times in (*jumps, *(one.jumps.tolist() for one in series)) for t in times}
     corners = sorted(jumping.union(*(_corners(h) for h in time_functions),
-                                   *(one.series.pieces.corners.tolist() for one in series)))
+                                   *(one.corners.tolist() for one in series)))
     return {"table_at": np.array([0, *accumulate(len(h.times) for h in time_functions)],
                                  dtype=np.int64),
             "table_times": np.array([t for h in time_functions for t in h.times], dtype=float),

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.close_rows import Grid, close_corners, stretches
 from sebody.assembly.numbering import Numbering
+from sebody.model.histories import of_columns
 from sebody.model.time_functions import TimeFunction
 
 MANY, SHARE = 20, 0.1   # steps, and share of all steps, that close rows may divide unsaid
@@ -35,7 +36,8 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
         yield from _missed([name], time_function.values, times[(times > begin) & (times < end)], h)
     for load in numbering.series:
         assert load.series is not None
-        series, times = load.series, load.series.pieces.times
+        series = load.series
+        times = _known(of_columns(series)[0], h)
         names = [f"column {column} of {load.name}" for column in series.names]
         yield from _missed(names, series.at, times[(times > begin) & (times < end)], h)
 

@@ -83,13 +83,14 @@ def test_all_series_of_the_jacket_by_the_same_scheme():
 
 
 def test_smooth_series_are_of_second_order_against_exact_solutions():
-    series = loads(step=0.0025, end=4.0, size=0.01, smooth=True)
-    exact, steps, errors = states(0.0025, series.values), (0.02, 0.01, 0.005), []
+    rows = 0.02
+    series = loads(step=rows, end=4.0, size=0.01, smooth=True)
+    exact, steps, errors = states(rows, series.values), (0.02, 0.01, 0.005), []
     for h in steps:
         model = jacket()
         model.body_series("jacket", series)
-        found, every = coordinates(simulate(model, h, 4.0)), round(h / 0.0025)
-        errors.append(np.abs((found - exact[::every])[:, :3]).max() / np.abs(exact[:, :3]).max())
+        found = coordinates(simulate(model, h, 4.0))[::round(rows / h)]
+        errors.append(np.abs((found - exact)[:, :3]).max() / np.abs(exact[:, :3]).max())
     assert order(steps, errors) > 1.8 and errors[-1] < 1e-3
 
 
@@ -231,12 +232,26 @@ def test_equilibria_and_a_missed_peak():
     result = equilibrium(model, 1)
     assert result["interface.position"][-1][0] == pytest.approx(0.0285365425, abs=5e-11)
     assert result["jacket.modes"][-1][-1] == pytest.approx(3.0 / 7976.34193, rel=1e-9)
-    peak = LoadSeries([0.0, 0.12, 0.13, 0.14, 1.0], np.c_[np.zeros(5), [0, 0, 1e5, 0, 0]],
+    peak = LoadSeries([0.0, 0.11, 0.18, 0.24, 1.0], np.c_[np.zeros(5), [0, 0, 1e5, 0, 0]],
                       ["x", "y"])
     model = jacket()
     model.body_series("jacket", peak, name="sea")
-    with pytest.warns(LimitWarning, match="column y of sea is 1e\\+05 at t = 0.13, between two"):
+    with pytest.warns(LimitWarning, match="column y of sea is 1e\\+05 at t = 0.18, between two"):
         simulate(model, 0.05, 0.5)
+
+
+def test_the_impulse_of_close_rows_is_kept():
+    """Of a blow within a step, as that of single loads, which tests of tables compare."""
+    t, blow = [0.0, 0.111, 0.112, 0.113, 1.0], np.array([0.0, 0.0, 1e3, 0.0, 0.0])
+    series = LoadSeries(t, np.outer(blow, (1.0, 0.02, 0.1, 0.05)), NAMES)
+    courses = [np.column_stack([t, column]) for column in series.values.T]
+    found, exact = (simulate(flying(load), 0.005, 0.2, generalized_alpha(0.9, tolerance=1e-12))
+                    for load in (lambda m, b: m.body_series("beam", series),
+                                 apart(series, courses)))
+    for name in ("momentum", "beam.modes"):
+        assert_allclose(found[name], exact[name], rtol=0, atol=1e-9 * np.abs(exact[name]).max())
+    change = np.linalg.norm(found["momentum"][-1] - found["momentum"][0])
+    assert change == pytest.approx(np.linalg.norm([1, 0, 0] + 0.05 * TURN @ (0, 5, 1)), rel=0.02)
 
 
 @pytest.mark.parametrize("bodies, elements", [(1, 12), (3, 12), (12, 12)])
