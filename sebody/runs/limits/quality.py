@@ -64,10 +64,12 @@ def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, energy:
     """Whether energy grows that nothing supplies: of all that there is, or of vibrations."""
     grown = increase(energy, work) / max((kinetic + strain).max(), 1e-300)
     if grown > GROWN:
+        cause = ("vibrations of a strongly bent body; take a smaller step, divide the body, or "
+                 "keep the position of a node off the line of the others" if part.model.bodies else
+                 "the fastest motion of its rigid parts; take a smaller step, or rho below 1")
         return {"growth": f"energy grows by {grown:.2g} of its maximum "
                 f"although no work is done on the model (limit {GROWN:g}): the steps do not "
-                "resolve vibrations of a strongly bent body; take a smaller step, divide the body, "
-                "or keep the position of a node off the line of the others"}
+                f"resolve {cause}"}
     most = strain.max()
     rise = increase(energy, work, from_lowest=False)
     allowed = WAVERS * most + growth.TURNED * _turned(part, h)**2 * kinetic.max()

@@ -220,3 +220,12 @@ def test_an_equilibrium_that_spins_too_fast():
     message, = said(lambda: equilibrium(bent(0.0, inertia="material"), spin=12.0))
     assert message.startswith("spin 12 rad/s is above the limit")
     assert "divide the body in two" in message
+
+
+def test_energy_that_grows_in_a_rigid_model_is_no_matter_of_bent_bodies(monkeypatch):
+    """Nothing in a mass on a spring could be divided."""
+    monkeypatch.setattr(quality, "increase", lambda *energies, **options: 1e9)
+    message, = said(lambda: oscillator(8.0))
+    assert message.startswith("energy grows by ")
+    assert message.endswith("the steps do not resolve the fastest motion of its rigid parts; take "
+                            "a smaller step, or rho below 1")
