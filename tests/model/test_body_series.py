@@ -245,13 +245,14 @@ def test_the_impulse_of_close_rows_is_kept():
     t, blow = [0.0, 0.111, 0.112, 0.113, 1.0], np.array([0.0, 0.0, 1e3, 0.0, 0.0])
     series = LoadSeries(t, np.outer(blow, (1.0, 0.02, 0.1, 0.05)), NAMES)
     courses = [np.column_stack([t, column]) for column in series.values.T]
-    found, exact = (simulate(flying(load), 0.005, 0.2, generalized_alpha(0.9, tolerance=1e-12))
-                    for load in (lambda m, b: m.body_series("beam", series),
-                                 apart(series, courses)))
+    scheme = generalized_alpha(0.9, tolerance=1e-12)
+    found, exact, still = (simulate(flying(load), 0.005, 0.2, scheme) for load in (
+        lambda m, b: m.body_series("beam", series), apart(series, courses), None))
     for name in ("momentum", "beam.modes"):
         assert_allclose(found[name], exact[name], rtol=0, atol=1e-9 * np.abs(exact[name]).max())
-    change = np.linalg.norm(found["momentum"][-1] - found["momentum"][0])
-    assert change == pytest.approx(np.linalg.norm([1, 0, 0] + 0.05 * TURN @ (0, 5, 1)), rel=0.02)
+    # vibrations of the blow are not resolved: 4 %, of steps a tenth as long 3e-4
+    change = np.linalg.norm(found["momentum"][-1] - still["momentum"][-1])
+    assert change == pytest.approx(np.linalg.norm([1, 0, 0] + 0.05 * TURN @ (0, 5, 1)), rel=0.05)
 
 
 @pytest.mark.parametrize("bodies, elements", [(1, 12), (3, 12), (12, 12)])
