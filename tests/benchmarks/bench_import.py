@@ -1,11 +1,12 @@
 """Import of a connecting rod of C3D10 beside CalculiX's own frequencies: time, memory, accuracy.
 
-    python tests/benchmarks/bench_import.py [--json] [--sizes 4.2 3 2.4] [--before FOLDER]
+    python tests/benchmarks/bench_import.py [--json] [--sizes 4.2 3 2.4] [--before PYTHON]
 
 Needs gmsh and ccx. Each size of element is meshed once; ``ccx`` writes the matrices, then computes
 twenty frequencies of the free part, and ``import_body`` makes a body with two rigid holes and
-twenty modes, each in a process of its own with one BLAS thread. FOLDER is the source of another
-version, which imports the same files in turn. Seconds are those of the processor, user and system.
+twenty modes, each in a process of its own with one BLAS thread. PYTHON is the interpreter of
+another version, which imports the same files in turn. Seconds are those of the processor, user and
+system.
 """
 
 import argparse
@@ -23,7 +24,7 @@ from sebody.reduction import free_frequencies
 
 SIZES = (4.2, 3.0, 2.4)
 MODES = 20
-HOLES = {"big": "cylinder:0,0,0;z;22", "small": "cylinder:160,0,0;z;11"}
+HOLES = {"big": "cylinder:0,0,0;z;22@0,0,0", "small": "cylinder:160,0,0;z;11@160,0,0"}
 MATERIAL = ["*MATERIAL, NAME=STEEL", "*ELASTIC", "210000., .3", "*DENSITY", "7.85e-9",
             "*SOLID SECTION, ELSET=ROD, MATERIAL=STEEL", "*STEP"]
 ONE = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
@@ -70,10 +71,9 @@ def mesh(size: float, folder: Path) -> Path:
     return deck
 
 
-def measured(command: list[str], folder: Path, source: Path | None = None) -> dict[str, float]:
+def measured(command: list[str], folder: Path) -> dict[str, float]:
     """Processor seconds and peak megabytes of a process."""
-    paths = {"PYTHONPATH": str(source)} if source else {}
-    child = subprocess.Popen(command, cwd=folder, env={**os.environ, **ONE, **paths},
+    child = subprocess.Popen(command, cwd=folder, env={**os.environ, **ONE},
                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     _, status, used = os.wait4(child.pid, 0)
     if status:
@@ -98,11 +98,12 @@ def row(size: float, before: Path | None) -> dict:
         measured(["ccx", "-i", "se"], folder)
         result = {"size": size, "rows": len((folder / "se.dof").read_text().splitlines()),
                   "ccx": measured(["ccx", "-i", "fr"], folder)}
-        versions = {"before": before, "import": None} if before else {"import": None}
-        for version, source in versions.items():
-            command = [sys.executable, "-c", IMPORT, "se.inp", json.dumps(HOLES), str(MODES),
+        versions = {"before": str(before)} if before else {}
+        versions["import"] = sys.executable
+        for version, python in versions.items():
+            command = [python, "-c", IMPORT, "se.inp", json.dumps(HOLES), str(MODES),
                        f"{version}.npz"]
-            result[version] = measured(command, folder, source)
+            result[version] = measured(command, folder)
         own = frequencies(folder / "fr.dat")
         model = read_fe_model(folder / "se.inp")
         free = free_frequencies(model, 10)
