@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from sebody.assembly.numbering import Numbering
-from sebody.io.load_series import LoadSeries, Pieces
-from sebody.model.histories import of_columns
+from sebody.model.histories import LoadSeries, Pieces, of_columns, pieces_of
 from sebody.model.parts import Element
 from sebody.model.time_functions import TimeFunction
 
@@ -119,11 +118,7 @@ def _pieces_of_steps(series: LoadSeries, grid: Grid | None) -> Pieces:
     if stretches(columns[0], grid) is None:
         return pieces
     given = [of_steps(one, pieces.jumps.tolist(), grid) for one in columns]
-    first, jumps = given[0]
-    terms = pieces.coefficients.shape[1]
-    return Pieces(np.array(first.times), np.stack(
-        [one.polynomials()[:, :terms] for one, _ in given], axis=2), np.array(first.corners),
-        np.array(jumps))
+    return pieces_of([one for one, _ in given], pieces.coefficients.shape[1], given[0][1])
 
 
 def of_steps(time_function: TimeFunction, jumps: Sequence[float], grid: Grid

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from sebody.contract.layout import INPUT
 from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL, SERIES
-from sebody.io.load_series import Pieces
 from sebody.kernels.loader import element_kernel
+from sebody.model.histories import Pieces
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Superelement
 from sebody.model.time_functions import TimeFunction, same_waves

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
-from sebody.io.load_series import LoadSeries
+from sebody.io.load_series import LoadSeries, Pieces
 from sebody.model.functions import compiled_history
 from sebody.model.history_rows import linear, table
 from sebody.model.time_functions import LOAD, TimeFunction
@@ -107,6 +107,13 @@ def of_columns(series: LoadSeries) -> list[TimeFunction]:
     times, corners = tuple(pieces.times.tolist()), tuple(pieces.corners.tolist())
     return [TimeFunction(times, tuple(map(tuple, own.tolist())), corners=corners)
             for own in pieces.coefficients.transpose(2, 0, 1)]
+
+
+def pieces_of(columns: Sequence[TimeFunction], terms: int, jumps: Sequence[float]) -> Pieces:
+    """The pieces of columns with the same times and corners, with so many coefficients each."""
+    return Pieces(np.array(columns[0].times),
+                  np.stack([one.polynomials()[:, :terms] for one in columns], axis=2),
+                  np.array(columns[0].corners), np.array(jumps))
 
 
 def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunction:
