@@ -11,7 +11,7 @@ class Given(Columns):
 
     @classmethod
     def of(cls, values: np.ndarray) -> "Given":
-        made = cls(np.zeros(1, dtype=np.int64), empty(1, len(values)), np.zeros(1, dtype=np.int64))
+        made = columns(np.zeros(1, dtype=np.int64), empty(1, len(values)), cls)
         numbers(made.rows)[0] = values
         return made
 
@@ -23,4 +23,11 @@ class Given(Columns):
 def numbers_of_all(values: np.ndarray) -> Columns:
     """Numbers that all members share, as compiled code reads them."""
     nothing = np.zeros(1, dtype=np.int64)
-    return Columns(nothing, values.reshape(1, -1).copy(), nothing)
+    return columns(nothing, values.reshape(1, -1).copy())
+
+
+def columns(places: np.ndarray, rows: np.ndarray, kind: type[Columns] = Columns) -> Columns:
+    """Rows and places alone: nothing is evaluated."""
+    nothing = np.zeros(1, dtype=np.int64)
+    return kind(places, rows, nothing, np.zeros((0, 2), dtype=np.int64),
+                np.zeros((0, 3), dtype=np.int64), nothing, nothing, empty(1))

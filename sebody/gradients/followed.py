@@ -12,11 +12,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import record_counts
 from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import OK, PREPARE, RECORD, TRANSPOSED
-from sebody.contract.read_numbers import FORCE, LOAD, NOW, TOTAL
+from sebody.contract.layout import OK, PREPARE, TRANSPOSED
+from sebody.contract.read_numbers import (
+    FORCE,
+    LOAD,
+    NOW,
+    OF_A,
+    OF_FORCE,
+    OF_Q,
+    OF_R,
+    OF_TOTAL,
+    OF_V,
+    TOTAL,
+)
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
@@ -30,9 +40,6 @@ from sebody.results.recording import Recording
 from sebody.results.tapes import States
 from sebody.runs.simulation import Simulation
 
-# what a number that is read depends on: a coordinate, its rate or second rate, a rotation matrix, a
-# force of an element, a sum of such forces; nothing
-OF_Q, OF_V, OF_A, OF_R, OF_FORCE, OF_TOTAL, NOTHING = range(7)
 MOVED = 1e-3            # change of kept numbers that shows which quantities depend on them
 ROUNDING = 1e-12
 DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD}
@@ -70,7 +77,7 @@ class Followed:
         if states.is_inside(quantity):
             raise NoTape("motions inside bodies")
         states.put(quantity)
-        kinds = {kind for kind, _ in states.tape.inputs}
+        kinds = states.kinds
         if not kinds <= DIFFERENTIATED:
             raise NoTape("energies and residuals")
         self.kinematic = not kinds & {FORCE, TOTAL}
@@ -80,7 +87,7 @@ class Followed:
             if self.products is None:
                 raise NoTape("forces of elements without products")
         self.reading = states.reading()
-        self.places = _places(run, self.reading.inputs)
+        self.places = states.depends()
         steady = not states.tape.steps and not linear.followers and np.isin(
             self.places[:, 0], (OF_Q, OF_V, OF_A)).all()
         self._same: Rows | None = self._at(0) if steady else None
@@ -104,30 +111,6 @@ class Followed:
                              f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
                              "is not where it is zero: give its components, or another time")
         return Rows(*rows[:, :, :linear.free])
-
-
-def _places(run: Simulation, inputs: NDArray) -> NDArray:
-    """What each number that is read depends on, and its place there, (inputs, 3).
-
-    Of a rotation matrix the place is the first coordinate of its rotation, then the entry.
-    """
-    numbering = run.numbering
-    slices = RECORD.slices(record_counts(numbering))
-    turns = {k: numbering.dof_blocks[block] for block, k in numbering.rotations.items()}
-    found = np.zeros((len(inputs), 3), dtype=np.int64)
-    for i, (_, kind, place) in enumerate(inputs.tolist()):
-        part = next((name for name, own in slices.items()
-                     if kind == NOW and own.start <= place < own.stop), "")
-        k = place - slices[part].start if part else place
-        if part in ("q", "v", "a"):
-            found[i] = ("q", "v", "a").index(part), k, 0
-        elif part == "R":
-            found[i] = OF_R, turns[k // 9], k
-        elif kind in (FORCE, TOTAL):
-            found[i] = OF_FORCE if kind == FORCE else OF_TOTAL, k, 0
-        else:
-            found[i] = NOTHING, 0, 0
-    return found
 
 
 def refuse_kept(run: Simulation, quantity: str) -> None:

@@ -318,6 +318,30 @@ def play_back(steps, factors, weights, numbers, bars):
 
 
 @compiled
+def play_along(steps, factors, weights, numbers, rates):
+    """Rates of the numbers of a tape from those of the numbers that are read."""
+    for s in range(steps.shape[0]):
+        function, place, first, end = steps[s, 0], steps[s, 1], steps[s, 2], steps[s, 3]
+        rate = 0.0
+        if function == ANGLE:
+            y, x = factors[first, 0], factors[first + 1, 0]
+            square = numbers[x] * numbers[x] + numbers[y] * numbers[y]
+            rate = (numbers[x] * rates[y] - numbers[y] * rates[x]) / square
+        elif function == CHOICE:
+            rate = rates[factors[chosen(factors, first, end, numbers), 1]]
+        elif function != POSITIVE:
+            for i in range(first, end):
+                for j in range(FACTORS):
+                    product = weights[i] * rates[factors[i, j]]
+                    for m in range(FACTORS):
+                        if m != j:
+                            product *= numbers[factors[i, m]]
+                    rate += product
+            rate *= _rate(function, numbers[place], steps, factors, weights, numbers, s)
+        rates[place] = rate
+
+
+@compiled
 def _rate(function, value, steps, factors, weights, numbers, s):
     """Derivative of the function of a step by its sum of products."""
     if function == ROOT:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect
 from functools import cached_property
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.numbering import Numbering, record_counts
@@ -13,6 +14,7 @@ from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, RESIDUE, TOTA
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
+from sebody.quantities.algebra import total
 from sebody.quantities.expressions import Number, Tape
 from sebody.quantities.numbers import Numbers
 
@@ -61,6 +63,8 @@ class Symbols(Numbers):
 
     def total(self, k: int) -> Number:
         self._refuse_redundant()
+        if not self.system.links.dependent.shape[0]:
+            return total(map(self.force, np.flatnonzero(self.system.g_unknown == k).tolist()))
         return self.tape.read(TOTAL, k)
 
     def local(self, body: str) -> list[Number]:

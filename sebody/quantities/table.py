@@ -164,6 +164,9 @@ BODY = {
                            numbered=True),
     "forces": Quantity(forces.of_body, numbered=True),
 }
+NODE_OF_BODY = {
+    **_pair(forces.at_node, _held_at),
+}
 JOINT = {
     "multipliers": Quantity(forces.multipliers, has=_has_equations, numbered=True),
     **_pair(forces.of_joint), **_pair(forces.in_joint_axes, prefix="local_"),
@@ -192,8 +195,7 @@ INSIDE = {name: Quantity(partial(_inside, name), unit)
 OWNERS = (
     Owner("node", "nodes are {names}", lambda of: of.model.nodes, NODE),
     Owner("body", "of bodies ({names}) there are {quantities}", forces.bodies, BODY),
-    Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies,
-          _pair(forces.at_node, _held_at)),
+    Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies, NODE_OF_BODY),
     Owner("joint", "of joints {quantities}", motion.joints, JOINT),
     Owner("drive", "of drives {quantities}", forces.drives, DRIVE),
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,

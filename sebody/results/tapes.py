@@ -9,10 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.motions import Motions, motions
-from sebody.assembly.numbering import Numbering
+from sebody.assembly.numbering import Numbering, record_counts
 from sebody.basics.errors import InputError
 from sebody.contract.layout import MOTION as ROW
-from sebody.contract.read_numbers import MOTION, NOW
+from sebody.contract.layout import RECORD
+from sebody.contract.read_numbers import (
+    FORCE,
+    MOTION,
+    NOW,
+    OF_A,
+    OF_FORCE,
+    OF_NOTHING,
+    OF_Q,
+    OF_R,
+    OF_TOTAL,
+    OF_V,
+    TOTAL,
+)
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
@@ -24,6 +37,8 @@ from sebody.quantities.symbols import NoTape, Symbols
 from sebody.quantities.table import find
 from sebody.results import naming, nodal
 from sebody.results.recording import Recording
+
+MOVES: dict[str | int, int] = {"q": OF_Q, "v": OF_V, "a": OF_A, FORCE: OF_FORCE, TOTAL: OF_TOTAL}
 
 
 class States(Symbols):
@@ -112,6 +127,26 @@ class States(Symbols):
         if any(kind != NOW for kind, _ in found):
             return None
         return np.array([place for _, place in found], dtype=np.int64)
+
+    def depends(self) -> NDArray:
+        """What each number that is read depends on, (inputs, 3), as of `contract.read_numbers`.
+
+        And its place there: of a rotation matrix the first coordinate of its rotation, then the
+        entry among all matrices.
+        """
+        numbering = self.numbering
+        slices = RECORD.slices(record_counts(numbering))
+        turns = {k: numbering.dof_blocks[block] for block, k in numbering.rotations.items()}
+        found = []
+        for kind, place in self.tape.inputs:
+            part = next((name for name, own in slices.items()
+                         if kind == NOW and own.start <= place < own.stop), "")
+            k = place - slices[part].start if part else place
+            if part == "R":
+                found.append((OF_R, turns[k // 9], k))
+            else:
+                found.append((MOVES.get(part or kind, OF_NOTHING), k, 0))
+        return np.array(found, dtype=np.int64).reshape(-1, 3)
 
     def reading(self) -> Reading:
         """The arrays of the tape."""

@@ -1,9 +1,8 @@
 """Quantities in states moved a little: their derivatives along small motions.
 
-A quantity follows from its values in states moved forth and back along a motion, in positions,
-velocities and accelerations: whatever has a history has a derivative. Forces of the elements are
-not evaluated in the moved states, where differences of large ones would cancel: they change by the
-exact element matrices. So do forces of joints without equations, which follow from them.
+Forces of the elements change by the exact element matrices, and a quantity of motions and forces by
+its tape. Others, such as energies and stresses, follow from their values in states moved forth and
+back along a motion, in positions, velocities and accelerations.
 """
 
 from collections.abc import Iterable, Sequence
@@ -14,14 +13,21 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import coordinates
 from sebody.basics.errors import InputError
+from sebody.contract.layout import RECORD_T
+from sebody.contract.read_numbers import FORCE, LOAD, NOW, OF_A, OF_FORCE, OF_R
+from sebody.engine.evaluate import set_loads
 from sebody.engine.links import pull_back
+from sebody.quantities.reading import evaluate_loaded, play_along
+from sebody.quantities.symbols import NoTape
 from sebody.results import rotations
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
+from sebody.results.tapes import States
 from sebody.runs.rotating_frame import Spin, by_element, motion
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative
 
+MOVING = {NOW, FORCE, LOAD}     # kinds of numbers whose change along a motion is exact
 UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
 # motion of the states that are compared, of the extent or in radians: of its fourth power is the
 # error of differences over steps of one and two, and rounding is divided by it
@@ -79,6 +85,58 @@ def differences(run: Simulation | Result, names: Sequence[str], along: Moves, pu
     small : float
         Motion of the states that are compared, of the characteristic length or in radians.
     """
+    found, change = {}, None
+    for name in names:
+        if (tape := _tape(run, name)) is not None:
+            change = pushed + _forces(run, along) if change is None else change
+            found[name] = _by_tape(run, *tape, along, change)
+    if rest := [name for name in names if name not in found]:
+        found |= _compared(run, rest, along, pushed, small)
+    return found
+
+
+def _tape(run: Simulation | Result, name: str) -> tuple[States, tuple[int, ...]] | None:
+    """The tape of a quantity of motions and forces, and its shape; None of others."""
+    states = States(run.model, run.numbering, run.system, run.state, run.state.now)
+    try:
+        shape = None if states.is_inside(name) else states.put(name)
+    except NoTape:
+        shape = None
+    return None if shape is None or not states.kinds <= MOVING else (states, shape)
+
+
+def _by_tape(run: Simulation | Result, states: States, shape: tuple[int, ...], along: Moves,
+             change: NDArray) -> NDArray:
+    """Derivatives along some motions, (k, ...), with changes of the forces of all elements."""
+    state, reading = run.state, states.reading()
+    loads = state.loads.copy()
+    set_loads(run.system, state.frames, state.loads, state.now[RECORD_T])
+    status = evaluate_loaded(run.system, state, reading)
+    state.loads[:] = loads
+    if status:
+        raise InputError("the state cannot be evaluated")
+    tape = reading.steps, reading.factors, reading.weights, reading.numbers
+    found = np.zeros((len(change), len(reading.outputs)))
+    for k, row in enumerate(found):
+        rates = np.zeros(len(reading.numbers))
+        for place, (kind, i, entry) in zip(reading.inputs[:, 0], states.depends(), strict=True):
+            if kind <= OF_A:
+                rates[place] = along[kind][k, i]
+            elif kind == OF_FORCE:
+                rates[place] = change[k, i]
+            elif kind == OF_R:      # of R skew(theta)
+                first, theta = entry // 3 * 3, along.positions[k, i:i + 3]
+                one, other = (entry + 1) % 3, (entry + 2) % 3
+                rates[place] = (state.R[first + one] * theta[other]
+                                - state.R[first + other] * theta[one])
+        play_along(*tape, rates)
+        row[:] = rates[reading.outputs]
+    return found.reshape(-1, *shape)
+
+
+def _compared(run: Simulation | Result, names: Sequence[str], along: Moves, pushed: NDArray,
+              small: float) -> dict[str, NDArray]:
+    """Derivatives of quantities without such a tape, from their values in moved states."""
     rows, scale = _moved_rows(run, along, small)
     recording = Result(run.model, run.numbering, run.system, run.state, rows, 0.0)
     base = Result(run.model, run.numbering, run.system, run.state, run.state.now[None].copy(), 0.0)

@@ -57,6 +57,12 @@ def test_inertia_option(original, tmp_path):
     assert "of 1 kernel hold" in sebody(tree, "check", "superelement_f2_converged_mean_half_way")
 
 
+def test_quantity(original, tmp_path):
+    """One formula and one row, for every reader."""
+    tree = followed(original, tmp_path, "A quantity")
+    run_tests(tree, "tests/quantities/test_intake.py")
+
+
 def test_file_source(original, tmp_path):
     tree = followed(original, tmp_path, "A file source")
     run_tests(tree, "tests/io/test_matlab.py")

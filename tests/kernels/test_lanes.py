@@ -26,9 +26,9 @@ from sebody.reduction.mean_rotation import mean_rotation
 if way().__name__.endswith("plain"):
     pytest.skip("the plain way has no lanes", allow_module_level=True)
 
-from lane_numbers import Given  # noqa: E402
+from lane_numbers import Given, columns  # noqa: E402
 
-from sebody.engine.lanes.arrays import Columns, empty, numbers  # noqa: E402
+from sebody.engine.lanes.arrays import empty, numbers  # noqa: E402
 
 EPS = np.finfo(float).eps
 
@@ -110,11 +110,11 @@ def test_frames_of_members_are_those_of_each_alone():
                       own.as_matrix().ravel(), np.concatenate([np.eye(3).ravel()] * 6)))
     together = [np.array(one).T for one in zip(*given, strict=True)]
     arrays, nodes = [Given.of(one) for one in together], np.arange(2)
-    arrays[4] = Columns(nodes, arrays[4].rows, nodes)
+    arrays[4] = columns(nodes, arrays[4].rows)
     frames(*arrays)
     refused = []
     for member, numbers_of_one in enumerate(given):
-        own = [Columns(nodes, one.reshape(1, -1).copy(), nodes) for one in numbers_of_one]
+        own = [columns(nodes, one.reshape(1, -1).copy()) for one in numbers_of_one]
         statuses = frames(*own)
         expected, found = own[5].rows[0], arrays[5].values[:, member]
         refused += [(member, k) for k, status in enumerate(statuses) if status != 0]
@@ -141,7 +141,7 @@ def sines_of(given):
 def sines_in_lanes(angles: np.ndarray) -> np.ndarray:
     """Sines and cosines of angles, eight at a time."""
     nothing = np.zeros(1, dtype=np.int64)
-    given = Columns(nothing, empty(3, len(angles) // MEMBERS), nothing)
+    given = columns(nothing, empty(3, len(angles) // MEMBERS))
     numbers(given.rows)[0] = angles.reshape(-1, MEMBERS)
     sines_of(given)
     return numbers(given.rows)[1:].reshape(2, -1).copy()
