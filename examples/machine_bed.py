@@ -54,8 +54,8 @@ def build(duration: float = DURATION) -> Scene:
     model.rigid_body("spindle", "tool", 80.0, (2.0, 2.0, 1.0))
     carriage = model.node("carriage", middle + (-0.6, 0.0, 0.0))
     model.rigid_body("table", carriage, CARRIAGE, (20.0, 25.0, 30.0), carriage.point + (0, 0, 0.2))
-    model.prismatic("rail", axis=(1.0, 0.0, 0.0), to=carriage, name="guide")
-    model.drive_slide("rail", rest_to_rest(STROKE, duration, 0.1), (1.0, 0.0, 0.0), carriage,
+    model.prismatic(carriage, axis=(1.0, 0.0, 0.0), to="rail", name="guide")
+    model.drive_slide(carriage, rest_to_rest(STROKE, duration, 0.1), (1.0, 0.0, 0.0), "rail",
                       name="drive")
     water = np.sqrt(0.6 * COOLANT) * np.eye(6)[:2]      # of which six tenths slosh
     model.superelement("coolant", appendage(np.diag([COOLANT] * 3 + [5.0] * 3), [1.1, 1.3], water,

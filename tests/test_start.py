@@ -14,7 +14,7 @@ COMMAND_LINE = {"sebody", "sebody.basics", "sebody.cli"}
 BASICS = {"sebody.basics.collector", "sebody.basics.lazy", "sebody.basics.errors"}
 MODEL_AND_RUN = {"sebody.contract", "sebody.compiler", "sebody.kernels", "sebody.generated",
                  "sebody.engine", "sebody.fem", "sebody.reduction", "sebody.io", "sebody.model",
-                 "sebody.assembly", "sebody.results", "sebody.runs"}
+                 "sebody.assembly", "sebody.quantities", "sebody.results", "sebody.runs"}
 # parts of rooms that neither a model nor a run needs
 UNUSED = {"sebody.explore.advice", "sebody.explore.ensembles", "sebody.small_motion.frequency",
           "sebody.small_motion.campbell", "sebody.runs.statics", "sebody.pictures.animation",

@@ -29,7 +29,6 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
-FASTER = 100.0          # square of a frequency, of the largest stiffness over mass of a coordinate
 
 
 def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
@@ -48,12 +47,12 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
     check_joints(model)
-    check_axes(model)
     check_grounded(model)
     numbering = number(model)
     if numbering.free == sum(equation.multipliers for equation in model.constraints):
         raise InputError("every node of the model is fixed: nothing is left to move, free one")
     batches = make_batches(model, numbering)
+    check_axes(model)       # of elements whose constants are known to fit
     ends, vectors = link_ends(model, numbering)
     own = indices(_structure(model, numbering, batches, ends))
     time_functions, jumps = given_to_steps(numbering, grid)
@@ -75,7 +74,8 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),
         regularized=np.zeros(1, dtype=np.int64), massless=np.zeros(1, dtype=np.int64),
-        stiffest=np.array([_stiffest(model)]),
+        body_stiffness=_diagonals(b.reduced.stiffness for b in model.bodies.values()),
+        body_mass=_diagonals(b.reduced.mass for b in model.bodies.values()),
         damped=np.array([int(any(b.reduced.damping is not None for b in model.bodies.values()))]),
         guarded=_guarded(model, numbering))
     owners = [owner for batch in batches.all for owner in batch.owners]
@@ -123,14 +123,9 @@ def _law_scratch(model: Mechanism, element: Element) -> int:
                    width)
 
 
-def _stiffest(model: Mechanism) -> float:
-    """Bound of the squares of frequencies that bodies hold: `FASTER` than a coordinate alone."""
-    largest = 0.0
-    for body in {id(b.reduced): b.reduced for b in model.bodies.values()}.values():
-        stiffness, mass = np.diag(body.stiffness), np.diag(body.mass)
-        moved = mass > 0.0
-        largest = max(largest, float((stiffness[moved] / mass[moved]).max(initial=0.0)))
-    return FASTER * largest
+def _diagonals(matrices: Iterable[NDArray]) -> NDArray:
+    """Diagonals of some matrices, one after the other."""
+    return np.concatenate([np.zeros(0), *map(np.diag, matrices)])
 
 
 def _parts(model: Mechanism, numbering: Numbering) -> NDArray:

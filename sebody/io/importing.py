@@ -56,7 +56,7 @@ def read_fe_model(path: str | Path, kind: str | None = None) -> FEModel:
 
 def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable[str] = (),
                 modes: int | Accuracy = 0, method: str = "craig-bampton", *,
-                kind: str | None = None, units: str = "", base: ArrayLike | None = None,
+                kind: str | None = None, units: str = "", base: "ArrayLike | None" = None,
                 damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
                 compare_free: bool = False, factor: Factor | None = None,
                 progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:

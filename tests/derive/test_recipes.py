@@ -99,4 +99,5 @@ def test_tutorial(original, tmp_path):
 def test_every_recipe_is_followed_here():
     text = (ROOT / ".github" / "CONTRIBUTING.md").read_text()
     titles = [line[3:] for line in text.splitlines() if line.startswith("## ")]
-    assert titles == ["A joint", "A frame", "An inertia option", "A file source", "A command"]
+    assert titles == ["A joint", "A frame", "An inertia option", "A quantity",
+                      "A file source", "A command"]

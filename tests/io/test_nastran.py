@@ -205,7 +205,8 @@ def test_places_that_are_not_those_of_the_matrix(tmp_path):
     grids = [GRIDS[0], GRIDS[1].replace("1.", "3.")]
     path = dmig(tmp_path / "se.pch", grids, KAAX=K, MAAX=M)
     with pytest.raises(InputError, match=r"resists rigid motion: .* \((position|rotation) . "
-                       r"of (tip \(node 7\)|root \(node 4\))\); as of supports,") as told:
+                       r"of (tip \(node 7\)|root \(node 4\))\); if the body is held "
+                       "to the ground: use grounded_body, .* as of supports,") as told:
         import_body(path, {"tip": 7, "root": 4})
     assert "digits" not in str(told.value)
     noise = 1e-5 * np.sin(np.add.outer(np.arange(12), np.arange(12)))
