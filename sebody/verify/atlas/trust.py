@@ -1,5 +1,7 @@
 """What `advise` may confirm: loads between steps, damping, rotation, instability."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.integrate import trapezoid
 
@@ -35,33 +37,39 @@ def missed_loads() -> Finding:
     """A pulse that falls between steps: what of it a mass gets, and what advice does."""
     finding = Finding(
         "a load between the steps",
-        "steps longer than a pulse miss it, or get too much of it",
-        "A run knows loads at the ends of its steps alone: a mass gets the trapezoidal sum of a "
-        "pulse, h times the forces at these times, which is nothing where none falls into it.",
+        "steps longer than a pulse miss it, or get too much of it, unless it is a table",
+        "A run knows functions at the ends of its steps alone: a mass gets the trapezoidal sum of "
+        "a pulse, h times the forces at these times, which is nothing where none falls into it. "
+        "Of a table whose rows are closer than steps it gets the whole impulse.",
         "advise compares the spectrum of what lies between steps with that of the load, shortens "
         "the steps of the reference until they miss 1 % at most, and says so; without that it is "
         "refused.", "step / duration of the pulse", "impulse that the mass gets / true one",
         logarithmic="x")
-    pulse = [(0.0, 0.0), (PULSE - WIDTH, 0.0), (PULSE, 1.0), (PULSE + WIDTH, 0.0)]
-    loads, expected, shares = time_function(pulse), [], []
+    table = [(0.0, 0.0), (PULSE - WIDTH, 0.0), (PULSE, 1.0), (PULSE + WIDTH, 0.0)]
+    loads = time_function(_pulse)
+    expected, shares, of_table = [], [], []
     parts = (1, 2, 4, 8, 16, 32, 64, 128)
     steps = 0.02 / np.array(parts)
     for h in steps:
         t = h * np.arange(round(0.12 / h) + 1)
         expected.append(float(trapezoid(loads.values(t), t)) / WIDTH)
-        model = Model(planar=True)
-        model.point_mass("mass", model.node("a", (1.0, 2.0), "translation"), 2.0)
-        model.force("a", (0.6, 0.8), pulse)
-        velocity = simulate(model, h, 0.12)["a.velocity"][-1]
-        shares.append(2.0 * float(velocity @ (0.6, 0.8)) / WIDTH)
+        for load, found in ((_pulse, shares), (table, of_table)):
+            model = Model(planar=True)
+            model.point_mass("mass", model.node("a", (1.0, 2.0), "translation"), 2.0)
+            model.force("a", (0.6, 0.8), load)
+            velocity = simulate(model, h, 0.12)["a.velocity"][-1]
+            found.append(2.0 * float(velocity @ (0.6, 0.8)) / WIDTH)
     over = steps / (2.0 * WIDTH)
     finding.predict("sum at the steps", over, expected)
-    finding.curves["measured"] = over, shares
+    finding.curves["function"] = over, shares
+    finding.curves["table"] = over, of_table
     finding.rows += [Row(f"step {h:g}: impulse", a, b, 1e-3)
                      for h, a, b in zip(steps, expected, shares, strict=True)]
+    finding.rows += [Row(f"step {h:g}: impulse of the table", 1.0, one, 1e-9)
+                     for h, one in zip(steps, of_table, strict=True) if h > WIDTH]
     whole = missed(["pulse"], [loads], 0.01, 0.12)
     finding.rows.append(Row("steps of 0.01 miss all of it", 1.0, whole.share, 0.05))
-    advice = advise(_struck([(t, 400.0 * f) for t, f in pulse]), 0.01, 0.16, "tip.position", 1e-2)
+    advice = advise(_struck(lambda t: 400.0 * _pulse(t)), 0.01, 0.16, "tip.position", 1e-2)
     finest = min(one.step for one in advice.table if one.kind == "reference")
     finding.rows += [
         Row("advise: share that its reference misses, at most 1 %", 1.0,
@@ -72,7 +80,12 @@ def missed_loads() -> Finding:
     return finding
 
 
-def _struck(load: list[tuple[float, float]]) -> Model:
+def _pulse(t: float) -> float:
+    """A triangle, of whose course between steps nothing is known."""
+    return max(0.0, 1.0 - abs(t - PULSE) / WIDTH)
+
+
+def _struck(load: Callable[[float], float]) -> Model:
     """A hinged strip with a weight, struck."""
     model = Model(planar=True)
     tip, root = model.node("tip", (LENGTH, 0.3)), model.node("root", (0.0, 0.3))
