@@ -1,5 +1,7 @@
 """From a model to the flat arrays that the compiled loop runs on."""
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 

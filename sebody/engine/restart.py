@@ -63,6 +63,7 @@ ACCURATE = 1e-10        # correction, relative to accelerations and multipliers,
 ROUNDED = 1e-6          # the same that may be left where new matrices do not help
 POOR = 0.3              # a contraction rate above this asks for a new matrix
 HARDLY = 0.5            # and above this rounding is all that is left, if little is
+FASTER = 100.0          # square of a frequency, of the largest stiffness over mass of a coordinate
 STIFF = 1e3             # of rounding, the same: stiff bodies at rest have forces of rounding alone
 SUMMANDS = 10.0         # roundings in what velocities make of accelerations
 CONTRADICTION = 1e-7    # residual, relative to the solution, of constraints that contradict others
@@ -180,16 +181,16 @@ def subtract(system, state):
 
     Where a body has no inertia about an axis, its residual is compared with what the regularization
     adds there: beside nothing but a thousandth of that, rounding would count as a contradiction.
+    The norm of the residual is of use with regularized matrices alone.
     """
     norm = size = left = 0.0
     for i in range(system.diagonal.size):
         d, r = state.correction[i] * state.weight[i], state.residual[i] * state.scale[i]
-        thin = system.massless_axes[i] > 0.0 and state.control.regularized == 1
         x = (state.q[i] if system.is_multiplier[i] > 0.0 else state.a[i]) * state.weight[i]
         norm += d * d
         size += x * x
-        left += (r * r / (1.0 + state.scale[i] * state.scale[i] * state.regularization[i]) if thin
-                 else r * r)
+        added = max(state.regularization[i], 0.0)       # of multipliers it is negative
+        left += r * r / (1.0 + state.scale[i] * state.scale[i] * added)
     norm = math.sqrt(norm)
     to_body_axes(system, state.frames, state.correction, True)
     for i in range(system.diagonal.size):
@@ -226,9 +227,19 @@ def _correct(system, state):
         control.wanted = EVALUATED
     ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
                                                        and control.fresh >= MOST_MATRICES)
-    if ended and stays and norm <= clock.floor * system.stiffest[0]:
+    if ended and stays and norm <= clock.floor * _fastest(system):
         return DONE         # frames of bodies are found to rounding, and so are their forces
     return FAILED if ended else SOLVE
+
+
+@compiled
+def _fastest(system):
+    """Bound of the squares of frequencies that bodies hold: `FASTER` than a coordinate alone."""
+    largest = 0.0
+    for i in range(system.body_mass.size):
+        if system.body_mass[i] > 0.0:
+            largest = max(largest, system.body_stiffness[i] / system.body_mass[i])
+    return FASTER * largest
 
 
 @compiled

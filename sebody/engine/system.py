@@ -99,7 +99,9 @@ class System(Arrays):
     control             sensors, controllers and inputs
     shared              mail and scratch memory of threads; empty for one thread
     regularized         (1,) 1 where constraints are redundant or something without mass can move
-    stiffest            (1,) bound of the squares of frequencies that bodies hold [1/time^2]
+    body_stiffness      diagonals of the stiffness of all superelements, which parameters change
+                        linearly, as those of the mass
+    body_mass           diagonals of their mass
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
@@ -165,7 +167,8 @@ class System(Arrays):
     shared: Shared
     regularized: NDArray
     massless: NDArray
-    stiffest: NDArray
+    body_stiffness: NDArray
+    body_mass: NDArray
     damped: NDArray
     guarded: NDArray
     routines: NDArray

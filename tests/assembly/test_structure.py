@@ -18,8 +18,9 @@ from sebody.reduction import craig_bampton
 INDICES = [f.name for f in fields(System) if f.name not in (
     "address", "index", "constants", "rotation_at", "dimension", "part", "inertias",
     "massless_axes", "magnitude", "table_at", "table_times", "table_pieces", "corners", "jumps",
-    "functions", "prescribed", "prescribed_factor", "links", "control", "regularized",
-    "massless", "damped", "guarded", "routines", "shared")]
+    "functions", "series", "series_times", "series_values", "prescribed", "prescribed_factor",
+    "links", "control", "regularized", "massless", "body_stiffness", "body_mass", "damped",
+    "guarded", "routines", "shared")]
 OF_LINKS = [f.name for f in fields(Links) if f.name != "arm_vectors"]
 CHANGES = {
     "support of another node": {"support": 1}, "another support": {"fixed": True},
