@@ -129,13 +129,20 @@ def test_stopped_at_jumps_and_continued(how, tmp_path):
     assert np.array_equal(stepped.result().rows, whole.rows)
 
 
-def test_ensembles_meet_jumps():
-    """Runs that begin with a copy of all numbers, and those that are built anew."""
-    table = [(0.0, 0.0), (0.05, 0.0), (0.05, 1.0), (0.12, 1.0), (0.1203, 1.0), (0.1203, -0.6)]
+@pytest.mark.parametrize("level", [0.9, 1.5])
+def test_ensembles_meet_jumps(level):
+    """Runs that begin with a copy of all numbers, and those that are built anew.
+
+    With a level of 1.5 the table as built is straight at 0.12, a close row, where that of the run
+    bends: no run begins with a copy then.
+    """
+    table = [(0.0, 0.0), (0.05, 0.0), (0.05, 1.5), (0.12, level), (0.1203, 1.5), (0.1203, -0.6)]
     values = np.array([0.0, 0.1, 0.8, 1.0, 1.2, -0.5])
-    model = one(table)
-    outcome = Ensemble(model, 1e-3).run({"push.table": [values], "push.amplitude": [2.0]}, 0.2,
-                                        {"tip": "b0.position"}, threads=1)
+    model, ensemble = one(table), Ensemble(one(table), 1e-3)
+    outcome = ensemble.run({"push.table": [values], "push.amplitude": [2.0]}, 0.2,
+                           {"tip": "b0.position"}, threads=1)
+    image, = ensemble._images.values()
+    assert image.linear == (level != 1.5)
     rows = np.column_stack([[t for t, _ in table], 2.0 * values])
     alone = simulate(one(rows), 1e-3, 0.2)["b0.position"]
     assert np.abs(outcome["tip"][0] - alone).max() < 1e-12

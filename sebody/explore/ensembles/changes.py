@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.model.model import Model
@@ -35,6 +36,9 @@ class Handle:
         fit, LOADS where neither.
     least, above, most : float, optional
         Bounds of the values.
+    as_built : function, optional
+        Sets a value with the pattern of the model as built, for steps of a grid: a table keeps its
+        corners, which follow from its values. Raises InputError if runs need another pattern.
     """
 
     base: Any
@@ -44,6 +48,7 @@ class Handle:
     least: float | None = None
     above: float | None = None
     most: float | None = None
+    as_built: Callable[[Any, Grid | None], None] | None = None
 
     @property
     def whole(self) -> bool:

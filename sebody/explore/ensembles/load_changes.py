@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.assembly.close_rows import Grid, close_corners
 from sebody.basics.errors import InputError
 from sebody.explore.ensembles.changes import LOADS, MOTION, Handle, attribute_of, constants_of
 from sebody.model.control_parts import Controller
@@ -119,9 +120,16 @@ def _table(element: Element, name: str, touches: str) -> Handle:
                          "vary the amplitude instead")
 
     def made(values: NDArray) -> TimeFunction:
-        # the corners of the table as built: runs that have the same ones begin with a copy
-        return replace(time_function(np.column_stack([rows[:, 0], values])), corners=before.corners)
-    return attribute_of(element, "time_function", touches, rows[:, 1], made)
+        return time_function(np.column_stack([rows[:, 0], values]))
+
+    def as_built(values: NDArray, grid: Grid | None) -> None:
+        if grid is not None and not np.array_equal(
+                close_corners(before, grid),
+                close_corners(replace(before, corners=before.times), grid)):
+            raise InputError(f"{name}: rows closer than steps may bend which do not as built")
+        element.time_function = replace(made(values), corners=before.corners)
+    return replace(attribute_of(element, "time_function", touches, rows[:, 1], made),
+                   as_built=as_built)
 
 
 def drive_amplitude(model: Model, drive: Joint | tuple[DofBlock, Motion], name: str) -> Handle:

@@ -147,10 +147,14 @@ class Image:
         return np.where(np.abs(change) > rounding, change, 0.0) / steps[k]
 
     def _at(self, handles: list[Handle], steps: list[NDArray]) -> NDArray | None:
-        """All numbers with some parameters changed; None if a body cannot have these values."""
+        """All numbers with some parameters changed; None if the model cannot have these values."""
         try:
             for handle, step in zip(handles, steps, strict=True):
-                handle.set(handle.base + step.reshape(handle.base.shape))
+                value = handle.base + step.reshape(handle.base.shape)
+                if handle.as_built is None:
+                    handle.set(value)
+                else:
+                    handle.as_built(value, self.template.grid)
             return self._numbers()
         except InputError:
             return None
