@@ -108,7 +108,7 @@ def column(load: str, low: float, high: float) -> Callable[[dict], Values]:
             model.gravity((-value, 0.0))
         else:
             model.force("tip", (-value, 0.0), follower=load == "follower")
-        return modes(equilibrium(model, 1)).growth.max() - 1e-2
+        return modes(equilibrium(model, 1, unstable="keep")).growth.max() - 1e-2
 
     def measured(option: dict) -> Values:
         if grows(option, high) < 0:
@@ -129,7 +129,8 @@ def sideways(option: dict) -> Values:
         model.superelement("arm", body, ends, **option)
         model.fix("root")
         model.force("tip", (0.0, 0.0, -load))
-        return np.linalg.eigvals(linearize(equilibrium(model, 1)).stiffness).real.min()
+        flat = equilibrium(model, 1, unstable="keep")
+        return np.linalg.eigvals(linearize(flat).stiffness).real.min()
     return {"load": brentq(lowest, 3.5, 5.5, xtol=1e-4) if lowest(5.5) < 0 else np.inf}
 
 

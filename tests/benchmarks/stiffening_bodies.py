@@ -53,7 +53,8 @@ def strip(option: dict) -> Values:
     def lowest(load: float) -> float:
         model = solid(0.3, (40, 1, 2), 6, option)
         model.force("tip", (-load, 0.0, 0.0))
-        return np.linalg.eigvals(linearize(equilibrium(model, 1)).stiffness).real.min()
+        straight = equilibrium(model, 1, unstable="keep")
+        return np.linalg.eigvals(linearize(straight).stiffness).real.min()
     return {"load": brentq(lowest, 5.0, 10.0, xtol=1e-4) if lowest(10.0) < 0 else np.inf}
 
 

@@ -36,9 +36,9 @@ def spinning(model: Model, spin: float) -> Result:
 
 
 def pressed(model: Model, load: float, follower: bool) -> Result:
-    """A load presses its tip along the axis, or along the tip."""
+    """A load presses its tip along the axis, or along the tip; it stays straight."""
     model.force("tip", (-load, 0.0), follower=follower)
-    return equilibrium(model, 2)
+    return equilibrium(model, 1, unstable="keep")
 
 
 def grows(build: Callable[[], Result], spin: float | None = None) -> bool:

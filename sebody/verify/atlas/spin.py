@@ -161,7 +161,8 @@ def buckling() -> Finding:
         "Bodies that are linear in their frames buckle only by rotation of the frames: one body "
         "with the frame at its root does not buckle, with a chord frame it buckles at 3 EI/L^2, "
         "and many bodies at pi^2/4 EI/L^2. One body with stiffening buckles at pi^2/4 EI/L^2.",
-        "sebody finds no stable equilibrium above the buckling load and says so.",
+        "Above the buckling load sebody leaves the straight state for a bent one and says so; on "
+        "request it keeps the straight one, with a warning.",
         "number of bodies", "load / (EI/L^2)", logarithmic="x")
     _by_bodies(finding, lambda n, frame: euler_load(cantilever(n, frame)),
                lambda n, frame, _: onset(lambda p: grows(
