@@ -48,7 +48,7 @@ def pole(kick: float = 0.0, modes: int = 4) -> Model:
 
 def design(modes: int = 4) -> tuple[StateSpace, np.ndarray, np.ndarray]:
     """State space about the upright position, weights of the states, gain of the regulator."""
-    system = state_space(equilibrium(pole(modes=modes), 1), "motor", SEEN)
+    system = state_space(equilibrium(pole(modes=modes), 1, unstable="keep"), "motor", SEEN)
     weights = np.diag([WEIGHT.get(name, 0.0) for name in system.outputs])
     Q = system.C.T @ weights @ system.C + 1e-6 * np.eye(len(system.A))
     return system, Q, regulator(system, Q, np.array([[0.1]]), PERIOD)
@@ -66,7 +66,7 @@ def build(kick: float = 1.0, modes: int = 4) -> Scene:
     """
     model = pole(kick, modes)
     system, _, K = design(modes)
-    rest = equilibrium(pole(modes=modes), 1)
+    rest = equilibrium(pole(modes=modes), 1, unstable="keep")
     upright = [float(np.asarray(rest[name])[-1]) for name in system.measurements]
     model.controller("loop", state_feedback(K, upright), system.measurements, ["motor"], PERIOD)
     return Scene("pole-on-cart", f"flexible pole kept upright by a cart, kicked by {kick:g} rad/s",
