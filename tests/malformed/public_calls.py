@@ -124,7 +124,8 @@ ANALYSIS = {
     "campbell": Call(an.campbell, lambda: {
         "model": shafts(), "speeds": [0.0, 1.0], "axis": (0.0, 0.0, 1.0), "count": 2, "steps": 2}),
     "equilibrium": Call(an.equilibrium, lambda: {
-        "model": pendulum(), "steps": 2, "t": 0.0, "tolerance": 1e-9, "spin": None}),
+        "model": pendulum(), "steps": 2, "t": 0.0, "tolerance": 1e-9, "spin": None,
+        "unstable": "leave"}),
     "linearize": Call(an.linearize, lambda: {"run": hanging(), "spin": None}),
     "modes": Call(an.modes, lambda: {"run": hanging(), "spin": None}),
     "vibrations": Call(an.vibrations, lambda: {"run": hanging(), "count": 1}),
