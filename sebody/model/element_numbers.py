@@ -30,7 +30,8 @@ def refuse_numbers(model: Mechanism, one: Element) -> None:
     if "exponent" in c:
         checked_law(what, c["stiffness"], c["exponent"])
     if "static" in c:
-        checked_friction(what, c["coefficient"], c["static"], c["bristle"] or None, None, c["speed"])
+        checked_friction(what, c["coefficient"], c["static"], c["bristle"] or None, None,
+                         c["speed"])
     if "preload" in c:
         inputs.number(c["radius"], f"{what}: radius", above=0)
         inputs.number(c["preload"], f"{what}: preload", least=0)
