@@ -155,8 +155,9 @@ def _holder(model: Mechanism, name: str, shares: Collection[str]) -> str | None:
     for element in model.elements():
         if element.name == name and not ("part" in shares and element not in model.loads):
             return _described(element)
-    tables = {"node": model.nodes, "sensor": model.sensors, "controller": model.controllers,
-              "signal": {out for one in model.controllers.values() for out in one.outputs}}
+    tables: dict[str, Collection[str]] = {
+        "node": model.nodes, "sensor": model.sensors, "controller": model.controllers,
+        "signal": {out for one in model.controllers.values() for out in one.outputs}}
     return next((kind for kind, names in tables.items() if kind not in shares and name in names),
                 None)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +26,9 @@ def refuse_numbers(model: Mechanism, one: Element) -> None:
     InputError
         As `stop`, `contact`, `gear` and `friction`.
     """
-    what, c = repr(one.name), {name: value if np.ndim(value) else float(value)
-                               for name, value in one.constants.items()}
+    what = repr(one.name)
+    c: dict[str, Any] = {name: value if np.ndim(value) else float(value)
+                         for name, value in one.constants.items()}
     if "exponent" in c:
         checked_law(what, c["stiffness"], c["exponent"])
     if "static" in c:

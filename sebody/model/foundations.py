@@ -59,6 +59,7 @@ def foundation(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable[N
                          f"{'were' if len(own) != 1 else 'was'} given: give one for each")
     placed = body if rotation is None else body.rotated(rotation)
     if base is None:
+        assert placed.base is not None
         interfaces = np.delete(placed.coordinates, placed.base, axis=0)
         shift = np.mean([one.point for one in own], axis=0) - interfaces.mean(axis=0)
         base = make_node(model, f"{name}.base", placed.coordinates[placed.base] + shift)

@@ -26,7 +26,8 @@ from sebody.model.outside import (
     values_read,
 )
 
-CHECKED = {"boundscheck": True}     # of all that users write, whatever options they compile it with
+# of all that users write, whatever options they compile it with
+CHECKED: dict[str, Any] = {"boundscheck": True}
 
 # arguments
 OF_TIME, FORCE = ("t",), ("t", "x", "v", "force")
@@ -149,7 +150,7 @@ def interpretable(function: Callable) -> Callable:
     """A function whose helpers are those of Python, where the user compiles some by Numba."""
     made: dict[int, Callable] = {}
 
-    def interpreted(value: object) -> object:
+    def interpreted(value: Any) -> Any:
         helper = getattr(value, "py_func", value)
         if not is_helper(helper):
             return value

@@ -56,7 +56,7 @@ def _missed(names: Sequence[str], course: Callable[[NDArray], NDArray], times: N
     excess = np.maximum(values - seen[1], seen[0] - values)
     missed = (excess > MISSED * np.abs(values).max(axis=0)).reshape(len(times), -1)
     missed &= off_grid[:, None]
-    for column in np.flatnonzero(missed.any(axis=0)):
+    for column in np.flatnonzero(missed.any(axis=0)).tolist():
         k, name = np.argmax(missed[:, column]), names[column]
         value, low, high = (one.reshape(len(times), -1)[k, column] for one in (values, *seen))
         yield name, (f"{name} is {value:.4g} at t = {times[k]:.6g}, between two steps of "

@@ -98,8 +98,10 @@ class Spin:
 
 def fastest_spin(run: Simulation | Result) -> tuple[NDArray, float]:
     """The largest angular velocity of a node, (3,) in global axes or (1,), and its size."""
-    spins = [_rotation(run, dof_block) @ run.state.v[at] if not run.model.planar else
-             run.state.v[at] for dof_block, at in _dof_blocks(run) if dof_block.rotational]
+    assert run.state is not None        # of a result that is no file
+    rates = run.state.v
+    spins = [rates[at] if run.model.planar else _rotation(run, dof_block) @ rates[at]
+             for dof_block, at in _dof_blocks(run) if dof_block.rotational]
     fastest = max(spins, key=np.linalg.norm, default=np.zeros(1))
     return fastest, float(np.linalg.norm(fastest))
 

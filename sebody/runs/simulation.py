@@ -392,9 +392,9 @@ def planned_simulation(model: Model, h: float, t_end: float, scheme: Scheme | No
     If the run with a larger tolerance fails, errors choose the steps one by one.
     """
     plan = Plan()
-    if given(tolerance) is not None:
-        coarser = max(1.0, min(COARSER, COARSEST / max(tolerance.relative, 1e-300)))
-        local = Tolerance(*(coarser * value for value in tolerance))
+    if (asked := given(tolerance)) is not None:
+        coarser = max(1.0, min(COARSER, COARSEST / max(asked.relative, 1e-300)))
+        local = Tolerance(*(coarser * value for value in asked))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LimitWarning)       # what is wrong there need not stay
             pilot = Simulation(model, h, scheme, 1, local, start, threads, Plan(logged=LOGGED))
