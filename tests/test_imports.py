@@ -34,7 +34,7 @@ MAY_IMPORT = {
     "pictures": {"fem", "reduction", "model", "results"},
     "names of results": {"results", "pictures"},
     "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results"},
-    "small_motion": {*COMPILED, "engine", "model", "assembly", "quantities", "results",
+    "small_motion": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results",
                      "pictures", "runs"},
     "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "quantities",
                 "results", "pictures", "runs", "small_motion"},

@@ -16,6 +16,19 @@ SERIES = 7
 
 
 @compiled
+def piece_at(times, first, last, t):
+    """The last of the pieces `first` to `last` that has begun at t; the first before all begin."""
+    i, end = first, last
+    while i < end:
+        middle = (i + end + 1) // 2
+        if times[middle] <= t:
+            i = middle
+        else:
+            end = middle - 1
+    return i
+
+
+@compiled
 def time_function_at(times, pieces, first, last, t, beside, out, at):
     """Value and two rates at t of the pieces `first` to `last`; constant before the first.
 
@@ -23,13 +36,7 @@ def time_function_at(times, pieces, first, last, t, beside, out, at):
     speed has it at once. Pieces are chosen by the time ``t + beside``: of a jump at t a negative
     `beside` gives what is before it.
     """
-    i, end = first, last
-    while i < end:
-        middle = (i + end + 1) // 2
-        if times[middle] <= t + beside:
-            i = middle
-        else:
-            end = middle - 1
+    i = piece_at(times, first, last, t + beside)
     x = max(t - times[i], 0.0)
     polynomial_at(pieces, i, x, out, at)
     if pieces[i, AMPLITUDE] != 0.0:
@@ -48,13 +55,7 @@ def set_series(series, times, values, t, beside, loads):
         port, first, pieces, columns, terms, place, at = (
             series[k, 0], series[k, 1], series[k, 2], series[k, 3], series[k, 4], series[k, 5],
             series[k, 6])
-        i, end = first, first + pieces - 1
-        while i < end:
-            middle = (i + end + 1) // 2
-            if times[middle] <= t + beside:
-                i = middle
-            else:
-                end = middle - 1
+        i = piece_at(times, first, first + pieces - 1, t + beside)
         x = max(t - times[i], 0.0)
         begin = place + (i - first) * columns * terms
         factor = loads[3 * port]

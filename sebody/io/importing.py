@@ -12,7 +12,6 @@ from scipy.linalg import eigh
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target
-from sebody.basics.massless import condensed
 from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
@@ -29,6 +28,7 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.factor import Factor
 from sebody.reduction.free import Resisted
 from sebody.reduction.grounded import grounded_body
+from sebody.reduction.massless import condensed
 from sebody.reduction.methods import free_frequencies, reduce
 from sebody.reduction.watch import SILENT, Watch, watching
 

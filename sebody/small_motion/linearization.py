@@ -14,8 +14,8 @@ from scipy.linalg import LinAlgError, null_space
 from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
-from sebody.basics.massless import condensed
 from sebody.basics.tabular import brief, counted
+from sebody.reduction.massless import condensed
 from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults

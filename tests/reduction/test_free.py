@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, fem
 from sebody.analysis import vibrations
-from sebody.basics.massless import condensed
 from sebody.explore.inspection import inspect
 from sebody.fem import FEModel, hexahedral_block, solid_stress
 from sebody.fem.solids import SolidPrestress
@@ -20,6 +19,7 @@ from sebody.fem.stress import elasticity
 from sebody.io import import_body, read_body_file
 from sebody.io.body_file import BodyFile, body_parts
 from sebody.reduction import MeanFace, ReducedBody, RigidFace, free_frequencies, reduce
+from sebody.reduction.massless import condensed
 
 FE = hexahedral_block((1, 2, 3), (10, 1, 1), (6, 2, 2), 2.1e5, 0.3, 7.85e-9)
 TURN = Rotation.from_rotvec([0.4, -0.7, 0.3]).as_matrix()

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh
 
 from sebody.basics.errors import InputError
-from sebody.basics.massless import condensed
 from sebody.io.body_file import BodyFile
 from sebody.reduction import frame_weights
 from sebody.reduction.checks import (
@@ -21,6 +20,7 @@ from sebody.reduction.checks import (
     rigid_residual,
     unit_scale,
 )
+from sebody.reduction.massless import condensed
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.runs.limits.thresholds import PERIOD
 
