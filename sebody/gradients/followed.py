@@ -237,11 +237,17 @@ def _clear(system, products, b, k):
 @compiled
 def _run(task, system, state, products, batches, k):
     b, element = batches[k, 0], batches[k, 1]
+    return run_element(task, b, element, _work_of(system, products, b, element), system, state,
+                       products)
+
+
+@compiled
+def _work_of(system, products, b, k):
+    """Place of the working memory of element k of a batch."""
     before = 0
     for i in range(b):
         before += system.count[i]
-    return run_element(task, b, element, products.at_work[before + element], system, state,
-                       products)
+    return products.at_work[before + k]
 
 
 @compiled
@@ -255,12 +261,9 @@ def _give(system, state, products, b, k, out, c):
         weighted = weighted or vectors[ROWS * first + i] != 0.0
     if not weighted:
         return
-    before = 0
-    for i in range(b):
-        before += system.count[i]
     if products.turned[b]:
         turn(system, state, vectors, ROWS * first, at_index, False)
-    run_element(TRANSPOSED, b, k, products.at_work[before + k], system, state, products)
+    run_element(TRANSPOSED, b, k, _work_of(system, products, b, k), system, state, products)
     for r in range(3):
         row = ROWS * first + (r + 1) * width
         if products.turned[b]:

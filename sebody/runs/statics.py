@@ -115,8 +115,9 @@ def _refuse_states(model: Model) -> None:
 def _result(run: Simulation, path: Loading) -> Result:
     stability = path.verdict()
     if stability.startswith("unstable"):
-        run.watch.say("stability", f"the equilibrium is {stability}: a disturbance lets it move "
-                      "away" + " (unstable='leave' looks for a stable one)" * path.keep, 4)
+        since = f" ({'; '.join(path.notes)})" * bool(path.notes)
+        run.watch.say("stability", f"the equilibrium is unstable{since}: a disturbance lets it "
+                      "move away" + "; unstable='leave' looks for a stable one" * path.keep, 4)
     run.watch.look(run.model, run.numbering, run.rows.all())
     results = run.result()
     results.stability = stability
