@@ -52,9 +52,9 @@ class Gradient:
     rows, columns : tuple of str
         What these are of: ``"tip[1]"`` is the second component of the objective ``tip``.
     growth : float
-        By how much the effect of a disturbance on the objectives is larger at its worst time than
-        at the end: near one for ordinary runs, without bound for chaotic ones, whose derivatives
-        are as large and hold in a range as small. An estimate in the mode 'forward'.
+        By how much the effect of a disturbance on the objectives grows in a run, told from one
+        half: near one for ordinary runs, without bound for chaotic ones, whose derivatives are as
+        large and hold in a range as small.
     seconds : float
         Of the whole, run included.
     run_seconds : float
@@ -259,9 +259,12 @@ def _adjoint(one: _Parts) -> tuple[NDArray, float, float]:
 
 
 def _growth(sizes: NDArray) -> float:
-    """Largest over last of what is not zero."""
+    """Square of the growth in the first half of a run, going back, of what is not zero.
+
+    An integral sums up effects that are nothing at its end: the last of them is no measure.
+    """
     seen = sizes[sizes > 0]
-    return float(seen.max() / seen[-1]) if len(seen) else 1.0
+    return float((seen.max() / seen[len(seen) // 2:].max()) ** 2) if len(seen) else 1.0
 
 
 def _forward(one: _Parts) -> tuple[NDArray, float, float]:

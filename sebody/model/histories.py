@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from numbers import Number
 from typing import TypeAlias, TypeGuard
@@ -10,10 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
+from sebody.basics.errors import LimitWarning
 from sebody.io.load_series import LoadSeries, Pieces
 from sebody.model.functions import compiled_history
 from sebody.model.history_rows import linear, table
 from sebody.model.time_functions import LOAD, TimeFunction
+
+BEYOND = 0.05       # of the range of a table: harmonics of eight rows a period leave it by 0.04
+WITHIN = 17         # values in an interval that are looked at
 
 FunctionWithRates: TypeAlias = tuple[
     Callable[[float], float], Callable[[float], float], Callable[[float], float]]
@@ -117,7 +122,21 @@ def pieces_of(columns: Sequence[TimeFunction], terms: int, jumps: Sequence[float
 
 
 def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunction:
-    """A time function of SciPy's cubics (4, intervals), highest power first, then constant."""
+    """A time function of SciPy's cubics (4, intervals), highest power first, then constant.
+
+    Warns where they leave the range of the rows by more than `BEYOND` of it.
+    """
+    rows = np.append(coefficients[-1], last)
+    within = np.linspace(0.0, 1.0, WITHIN)[:, None] * np.diff(times)
+    values = np.polyval(coefficients, within)
+    beyond = np.maximum(values - rows.max(), rows.min() - values)
+    share = beyond.max() / max(np.ptp(rows), 1e-300)
+    if share > BEYOND:
+        k = np.unravel_index(np.argmax(beyond), beyond.shape)
+        warnings.warn(f"the spline through a table of {len(times)} rows leaves their range by "
+                      f"{100.0 * share:.2g} % of it, to {values[k]:.6g} at t = "
+                      f"{times[k[1]] + within[k]:.6g}: give more rows, rows (t, value, rate) by "
+                      "spline, or rest_to_rest", LimitWarning, stacklevel=4)
     return TimeFunction(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
                                            (float(last),)))
 

@@ -11,7 +11,7 @@ from sebody.model.derivatives import rates_of
 from sebody.model.functions import compiled_history
 from sebody.model.histories import Source, is_function_with_rates, spline_of
 from sebody.model.history_rows import table
-from sebody.model.time_functions import MOTION, TimeFunction
+from sebody.model.time_functions import MOTION, NEAR, TimeFunction
 
 SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user are tested
 
@@ -57,14 +57,14 @@ def motion(source: Source) -> TimeFunction:
 
 
 def _refuse_jumps(given: TimeFunction) -> None:
-    """Refuse a motion that no body can follow."""
-    for t, before, after in given.jumps():
-        for k, what in enumerate(("position", "rate")):
-            if before[k] != after[k]:
-                raise InputError(
-                    f"motion of a drive: its {what} jumps from {before[k]:.6g} to {after[k]:.6g} "
-                    f"at t = {t:.6g}, which no body can follow: use rest_to_rest, "
-                    "trapezoidal or a spline; only at t = 0 may a drive begin with a speed")
+    """Refuse a motion that no body can follow: at corners of its pieces, or those declared."""
+    for k, what in enumerate(("position", "rate")):
+        for t in given.abrupt(k):
+            before, after = (given.at(t * (1.0 + side))[k] for side in (-NEAR, NEAR))
+            raise InputError(
+                f"motion of a drive: its {what} jumps from {before:.6g} to {after:.6g} at t = "
+                f"{t:.6g}, which no body can follow: use rest_to_rest, trapezoidal or a spline; "
+                "only at t = 0 may a drive begin with a speed")
 
 
 def _check_rates(functions: Sequence[UserFunction]) -> None:

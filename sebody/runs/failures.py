@@ -1,5 +1,7 @@
 """Why a run stopped, and what to do about it."""
 
+import numpy as np
+
 from sebody.assembly.numbering import Numbering
 from sebody.engine.state import (
     FINEST,
@@ -13,7 +15,7 @@ from sebody.engine.system import System
 from sebody.model.model import Model
 from sebody.results.contact_states import states
 from sebody.runs import user_faults
-from sebody.runs.redundancy import contradiction
+from sebody.runs.redundancy import contradiction, multiplying, parties_of
 
 MUCH = 1.0          # coefficient of friction above which a rod may jam before it slides
 WITHOUT_MASS = ("The model has motions without mass, such as those of MacNeal's bodies, which jump "
@@ -33,17 +35,44 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
             return f"{stopped}: {told}; {KEPT}"
         reason = SLOW
     if reason == NO_START:
-        return (f"{stopped}, where loads jump: {REASONS[reason]}; {KEPT}. Check loads and joints "
-                "at this time")
+        return (f"{stopped}, where loads jump: {REASONS[reason]}, as "
+                f"{_unsettled(system, state, numbering)}; {KEPT}")
     variable = state.control.adaptive == 1
     shortest = state.clock.chosen if variable else state.clock.step / FINEST
     if system.massless[0]:      # rates of what jumps are larger in shorter steps
         remedy = f"{WITHOUT_MASS} {'a larger tolerance' if variable else 'another step'}"
     else:
-        remedy = (f"Use {'a larger tolerance' if variable else 'a smaller step'}, check the loads, "
-                  "or split the body into more superelements")
+        remedy = (f"Use {'a larger tolerance' if variable else 'a smaller step'}, "
+                  + ("check the loads, or divide bodies that bend far" if model.bodies else
+                     "or check the loads"))
     return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
             f"{remedy}{_jammed(model, numbering, state)}")
+
+
+def of_start(system: System, state: State, numbering: Numbering) -> str:
+    """The message of a run whose first state has no accelerations."""
+    reason = int(state.control.reason)
+    why = REASONS[reason]
+    if reason == NO_START:
+        why += f", as {_unsettled(system, state, numbering)}"
+    return f"the initial state has no accelerations: {why}"
+
+
+def _unsettled(system: System, state: State, numbering: Numbering) -> str:
+    """What the last corrections of accelerations and multipliers changed most, and why."""
+    n = system.diagonal.size
+    change = np.abs(state.correction[:n] * state.weight[:n])
+    if not np.isfinite(change).all():
+        return "masses and forces are too large or too different for numbers: check their units"
+    held = multiplying(system)
+    if held[int(np.argmax(change))]:
+        parties = parties_of(numbering.names, np.where(held, change, 0.0))
+        return (f"the forces of {parties} do not settle: their constraints nearly repeat each "
+                "other, or hold what moves hardly any mass; put joints further apart, or one in "
+                "place of several")
+    return (f"the acceleration of {numbering.names[int(np.argmax(change))]} does not settle: it "
+            "moves hardly any mass beside the stiffness there, or a force on it depends on "
+            "accelerations; add mass or inertia there, or soften what acts on it")
 
 
 def _jammed(model: Model, numbering: Numbering, state: State) -> str:

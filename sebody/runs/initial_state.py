@@ -17,13 +17,14 @@ from sebody.engine.state import ASKED, State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
 from sebody.results.recording import Start
-from sebody.runs.redundancy import Solver, least, part_sizes
+from sebody.runs.redundancy import Solver, least, part_sizes, parties_of
 from sebody.runs.rigid_start import follow_drives
 from sebody.runs.tuning import LoadedBristles, tune
 from sebody.runs.user_faults import fault
 
 WHAT = "the initial state"
 SMALL = 1e-8            # largest residual of constraints, relative to positions or velocities
+ROUNDED = 1e-12         # of positions or a radian in a step, that is rounding: nothing moves
 HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
@@ -146,6 +147,22 @@ def _check(values: NDArray, size: NDArray | float, what: str, multipliers: NDArr
                              f"{remedy}")
 
 
+def _check_rates(rates: NDArray, size: NDArray, multipliers: NDArray, model: Mechanism,
+                 numbering: Numbering) -> None:
+    """Refuse velocities that joints do not allow; drives that differ are named as such."""
+    excess = np.zeros(numbering.total)
+    excess[multipliers] = np.abs(rates) / size
+    if excess.max() > SMALL:
+        drives = [joint.name for joint in model.joints if joint.kind == "drive"]
+        parties = parties_of(numbering.names, excess).split(", ")
+        if len(named := [party for party in parties if party in drives]) > 1:
+            raise InputError(f"the drives {', '.join(named)} contradict each other: they begin "
+                             "with different speeds of the same motion; remove one, or give them "
+                             "the same motion")
+    _check(rates, size, "velocity", multipliers, numbering,
+           "no velocities satisfy all joints, drives and initial velocities; change one of them")
+
+
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, solver: Solver,
                     multipliers: NDArray) -> dict[str, float]:
@@ -183,8 +200,10 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
                              f"{_shown(dof_block.rate)}, contradicts joints, drives or other "
                              f"initial velocities, which demand {demanded}: leave some of them "
                              "out, they are solved for")
-    _check(_rates(system, state, multipliers), size, "velocity", multipliers, numbering,
-           "no velocities satisfy all joints, drives and initial velocities; change one of them")
+    lengths = _lengths(model, system, numbering, state)[multipliers]
+    _check_rates(_rates(system, state, multipliers),
+                 np.maximum(size, ROUNDED / SMALL / state.clock.step * lengths), multipliers,
+                 model, numbering)
     changes = {t.name: float(np.abs(answer[coordinates(numbering, t)]).max()) for t in dof_blocks}
     return {name: change for name, change in changes.items() if change > SMALL * size}
 

@@ -18,6 +18,7 @@ WEAK = 1e-6             # pivot of a redundant constraint; of another one, its s
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
 MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
 SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
+EXERTED = 1e-10         # force of multipliers, in scaled unknowns, that is rounding
 SHARPENED = 3           # times that `Relaxed.unmoved` leaves REGULARIZATION of what exerts a force
 UNSHARED = 1e-6         # part in what exerts no force that is rounding, of the largest
 PROBES = 8              # iterations after which the motion with the least inertia is left
@@ -115,7 +116,7 @@ class Solver:
 
     def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
         self.system = Scaled(matrix, units(matrix, system))
-        self.names = numbering.names
+        self.names, self.multiplying = numbering.names, multiplying(system)
         self.redundant: tuple[str, ...] = ()
         self.shared: tuple[str, ...] = ()
         self.massless = not self.system.regular
@@ -139,12 +140,20 @@ class Solver:
         InputError
             Constraints that contradict each other.
         """
-        _, left = self.regularized.least(residual)
-        if left.max() > CONTRADICTION * max(np.abs(self.regularized.scale * residual).max(),
-                                            1e-300):
-            raise InputError(f"the constraints contradict each other at "
-                             f"{self.names[int(np.argmax(left))]}: they demand different values "
-                             "of the same acceleration; remove a joint or a drive")
+        relaxed = self.regularized
+        answer, left = relaxed.least(residual)
+        if left.max() <= CONTRADICTION * max(np.abs(relaxed.scale * residual).max(), 1e-300):
+            return
+        parties = parties_of(self.names, np.where(self.multiplying, left, 0.0))
+        gap = self._without_force(relaxed.scale * (residual - relaxed.matrix @ answer))
+        force = relaxed.scale * (relaxed.matrix @ (relaxed.scale * gap))
+        if np.abs(force).max() > EXERTED * np.abs(gap).max():
+            raise InputError(f"the constraints of {parties} nearly repeat each other: they are so "
+                             "close together that rounding spoils the forces that they need for "
+                             "what they hold; put them further apart, or one joint in their place")
+        raise InputError(f"the constraints of {parties} contradict each other: they demand "
+                         "different values of the same acceleration; remove one, or give drives "
+                         "the same motion")
 
     def _find_redundant(self, matrix: csc_matrix, system: System) -> None:
         """Joints with constraints whose pivots are those of the regularization.
@@ -162,9 +171,14 @@ class Solver:
         if self.massless:
             self.regularized = heavier
         part = np.where(multipliers, np.random.default_rng(0).normal(size=weak.size), 0.0)
-        for _ in range(SHARPENED):      # one without force has, at random, part of every such one
-            part = np.where(multipliers, self.regularized.unmoved(part), 0.0)
+        part = self._without_force(part)    # it has, at random, part of every one without force
         self.shared = joints(self.names, np.abs(part) > UNSHARED * np.abs(part).max())
+
+    def _without_force(self, multipliers: NDArray) -> NDArray:
+        """The part of multipliers, in scaled unknowns, that exerts no force, or hardly one."""
+        for _ in range(SHARPENED):
+            multipliers = np.where(self.multiplying, self.regularized.unmoved(multipliers), 0.0)
+        return multipliers
 
     def _check_mass(self, system: System) -> None:
         """Refuse a motion that the constraints leave free and that has no mass."""
@@ -206,10 +220,14 @@ def contradiction(system: System, state: State, numbering: Numbering) -> str:
             return ""
         return (f"a force acts on {numbering.names[worst]}, which moves no mass: add mass or "
                 "inertia there, or fix it")
-    parties = (left > SHARED * left.max()) & multiplying(system)
-    return (f"the constraints of {', '.join(joints(numbering.names, parties))} contradict each "
-            "other: no motion satisfies all of them; remove one, or give the drives motions that "
-            "the joints allow")
+    parties = parties_of(numbering.names, np.where(multiplying(system), left, 0.0))
+    return (f"the constraints of {parties} contradict each other: no motion satisfies all of them; "
+            "remove one, or give the drives motions that the joints allow")
+
+
+def parties_of(names: list[str], left: NDArray) -> str:
+    """Joints whose constraints are left with nearly the largest residual, (unknowns,), in words."""
+    return ", ".join(joints(names, left > SHARED * left.max()))
 
 
 def joints(names: list[str], chosen: NDArray) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
-from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, REASONS, Record, Scheme, State
+from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
 from sebody.engine.system import System
 from sebody.model.control_order import misspelt
 from sebody.model.model import Model
@@ -24,7 +24,7 @@ from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 from sebody.runs import user_faults
-from sebody.runs.failures import explained
+from sebody.runs.failures import explained, of_start
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
 from sebody.runs.helpers import TOO_SMALL, checked_threads, helping, worth_help
@@ -353,9 +353,7 @@ class Simulation:
         if code == FAILED and (did := user_faults.fault(self.model, 0.0)):
             raise InputError(f"the run cannot begin: {did}")
         if code == FAILED:
-            raise InputError("the initial state has no accelerations: "
-                             f"{REASONS[int(state.control.reason)]}; check the loads and the "
-                             "joints at t = 0")
+            raise InputError(of_start(self.system, state, self.numbering))
         state.control.matrices = 0
         state.aux_old[:] = state.aux
 

@@ -28,11 +28,14 @@ class Campbell:
         Angular frequencies in axes that rotate with the model [1/time].
     growth : (m, count)
         Real parts of the eigenvalues, negative where the motion decays [1/time].
+    rounding : (m, count)
+        How far rounding may move the values: a growth below it is none [1/time].
     """
 
     speeds: NDArray
     omega: NDArray
     growth: NDArray
+    rounding: NDArray
 
     def __repr__(self) -> str:
         return tabular.text(*self._table())
@@ -47,9 +50,10 @@ class Campbell:
                  "rad/s")
         heads = "mode", f"[Hz] at {first} rad/s", f"[Hz] at {last} rad/s", "largest real part [1/s]"
         hertz = self.omega / (2 * np.pi)
+        growths = np.where(np.abs(self.growth) > self.rounding, self.growth, 0.0)
         return title, heads, [
             (str(k + 1), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}", f"{growth.max():.4g}")
-            for k, growth in enumerate(self.growth.T)]
+            for k, growth in enumerate(growths.T)]
 
     def save_picture(self, path: str | Path) -> Path:
         """Draw frequencies and real parts of eigenvalues over the speed: png, pdf or svg.
@@ -110,8 +114,9 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
     chosen = [np.arange(count)]
     for last, now in zip(rows, rows[1:], strict=False):
         chosen.append(_followed(last, chosen[-1], now))
-    values = np.array([one.values[own] for one, own in zip(rows, chosen, strict=True)])
-    return Campbell(speeds, values.imag, values.real)
+    values, rounding = (np.array([of[own] for of, own in zip(each, chosen, strict=True)])
+                        for each in ([one.values for one in rows], [one.rounding for one in rows]))
+    return Campbell(speeds, values.imag, values.real, rounding)
 
 
 def _followed(last: Modes, own: NDArray, now: Modes) -> NDArray:

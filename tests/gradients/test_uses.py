@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import minimize
 
 from sebody import InputError, LimitWarning, Model, simulate
-from sebody.analysis import ValueAndGradient, calibrate, final, gradient, rms
+from sebody.analysis import ValueAndGradient, calibrate, final, gradient, integral, rms
 from sebody.gradients.point import Point
 from sebody.runs.schemes import generalized_alpha
 
@@ -130,6 +130,20 @@ def test_chaotic_runs_are_named():
         with pytest.warns(LimitWarning, match="unstable or chaotic"):
             gradient(m, 0.01, 16.0, final("tip.position"), ["upper.mass"], mode)
     assert gradient(m, 0.01, 0.5, final("tip.position"), ["upper.mass"]).growth < 10
+
+
+def test_the_growth_of_a_plain_swing():
+    """Integrals too: the last effects on these are of a step, a thousandth of the others."""
+    m = Model(planar=True)
+    m.gravity((0.3, -9.81))
+    m.rigid_body("rod", m.node("a", (1.0, 2.0)), 1.0, 0.1, centre=(2.0, 2.1))
+    m.attach("tip", (3.0, 2.2), "a")
+    m.revolute("a")
+    m.torsion_spring("a", 0.5, name="spring")
+    for objective in (final("tip.position"), integral("tip.position")):
+        for h in (0.01, 0.001):
+            for mode in ("adjoint", "forward"):
+                assert gradient(m, h, 2.0, objective, ["spring.stiffness"], mode).growth < 50
 
 
 @pytest.mark.parametrize("amplitude", [2.0, 0.0])

@@ -1,14 +1,18 @@
 """Ready time functions: closed forms, rates against SymPy and differences, starts and jumps."""
 
 import math
+import re
+import warnings
 
 import numpy as np
 import pytest
 import sympy as sp
 from numba import njit
+from scipy.interpolate import CubicSpline
 
 from sebody import (
     InputError,
+    LimitWarning,
     Model,
     Simulation,
     harmonic,
@@ -27,6 +31,8 @@ from sebody.model.motions import motion
 t = sp.Symbol("t")
 u = (t - sp.Rational(1, 4)) / 2
 ROWS = [(0.0, 0.2, 1.5), (0.5, 0.4, -0.3), (1.3, -0.1, 0.0)]
+# its rate jumps at 0.5
+BENT = (lambda t: max(t, 2.0 * t - 0.5), lambda t: 2.0 if t > 0.5 else 1.0, lambda t: 0.0 * t)
 # a profile, and its formula on an interval, as far as it has one
 FORMULAS = {
     "rest to rest": (rest_to_rest(-3.0, 2.0, start=0.25, origin=0.5),
@@ -142,6 +148,7 @@ def test_profiles_of_any_numbers_drive():
      "use rest_to_rest, trapezoidal or a spline; only at t = 0 may a drive begin with a speed"),
     (lambda: motion(piecewise((0, 0.0), (1, 2.0))), "position jumps from 0 to 2 at t = 1"),
     (lambda: motion(ramp(1.0, start=0.5)), "rate jumps from 0 to 1 at t = 0.5"),
+    (lambda: motion(with_corners(BENT, [0.5])), "rate jumps from 1 to 2 at t = 0.5, which no body"),
     (lambda: rest_to_rest(1.0, 0.0), "duration is 0.0: give a positive number"),
     (lambda: rest_to_rest("far", 1.0), "distance is 'far': give a finite number"),
     (lambda: trapezoidal(1.0, -2.0, 1.0), "speed is -2.0: give a positive number"),
@@ -217,3 +224,21 @@ def test_loads_follow_profiles():
 def test_rest_is_rest_but_for_rounding(duration):
     """The last rates of the polynomial cancel; what is left is no jump."""
     assert not motion(rest_to_rest(2 * math.pi, float(duration))).corners
+
+
+@pytest.mark.parametrize("origin, size", [(0.0, 1.0), (-7.0, -1e-3)])
+def test_a_spline_that_leaves_the_range_of_its_rows(origin, size):
+    """A step up: the cubic overshoots, by what SciPy's spline does on a fine grid."""
+    times = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+    values = np.array([0.0, 0.0, 1.0, 1.0, 1.0])
+    exact = CubicSpline(times, values, bc_type="clamped")(np.linspace(0.0, 4.0, 40001)).max() - 1.0
+    rows = np.stack([times, origin + size * values], axis=1)
+    for build in (spline, motion):
+        with pytest.warns(LimitWarning, match="leaves their range by") as caught:
+            build(rows)
+        share, = re.findall("by ([0-9.]+) %", str(caught[0].message))
+        assert float(share) == pytest.approx(100.0 * exact, rel=0.05)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        turns = np.linspace(0.0, 2.0 * np.pi, 9)
+        spline(np.stack([turns, origin + size * np.cos(turns)], axis=1))

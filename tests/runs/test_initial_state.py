@@ -4,8 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, Simulation, generalized_alpha, hht, ramp, simulate
+from sebody import (
+    InputError,
+    Model,
+    Simulation,
+    generalized_alpha,
+    harmonic,
+    hht,
+    ramp,
+    simulate,
+)
 from sebody.contract.layout import HALF_TURN, RESIDUAL
 from sebody.engine import evaluate
 from sebody.fem import straight_beam
@@ -314,3 +324,66 @@ def test_flexible_bodies_follow_drives_that_start_from_speed(how, planar):
         assert result[f"{node}.angular_velocity"][0] == pytest.approx(
             spin[2] if planar else spin, abs=1e-6)
         assert f"{node}.position" in run.start.changed
+
+
+def hung_on_two_balls(distance, turn):
+    """A rod that its weight would turn across the line between them."""
+    model = Model()
+    model.gravity(turn @ (0.0, -9.81, 0.0))
+    model.rigid_body("rod", model.node("a", (1.0, -2.0, 0.5)), 2.0, np.diag([0.1, 0.2, 0.3]),
+                     centre=(1.0, -2.0, 0.5) + turn @ (1.0, 0.1, 0.0))
+    model.spherical("a", name="first")
+    model.spherical(model.attach("c", (1.0, -2.0, 0.5) + turn @ (distance, 0.0, 0.0), "a"),
+                    name="second")
+    return model
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()])
+def test_joints_that_nearly_repeat_each_other(turn):
+    """Two balls hold what a hinge does; very close ones are named, and contradict nothing."""
+    result = simulate(hung_on_two_balls(3e-4, turn), 0.01, 0.2)
+    # the moment of the weight about the first: m g 1 m
+    assert np.linalg.norm(result["second.force"][-1]) == pytest.approx(2 * 9.81 / 3e-4, rel=1e-3)
+    assert result.warnings == ()
+    for distance in (1e-4, 3e-6):
+        with pytest.raises(InputError, match="constraints of first, second nearly repeat each "
+                                             "other: .*put them further apart"):
+            simulate(hung_on_two_balls(distance, turn), 0.01, 0.2)
+
+
+def driven_twice(*motions):
+    model = Model()
+    model.rigid_body("arm", model.node("n", (1.0, 2.0, 3.0)), 2.0, np.diag([0.1, 0.2, 0.3]),
+                     centre=(1.2, 2.1, 3.0))
+    model.revolute("n", (0.3, -0.2, 1.0), name="hinge")
+    for name, motion in zip(("one", "other"), motions, strict=True):
+        model.drive_angle("hinge", motion, name=name)
+    return model
+
+
+@pytest.mark.parametrize("build", [lambda a: harmonic(a, 4.0), ramp,
+                                   lambda a: harmonic(a, 4.0, phase=np.pi / 2)])
+def test_drives_of_different_motions(build):
+    """Refused in words of drives: in the last case they begin at rest but for rounding."""
+    with pytest.raises(InputError, match="(drives|constraints of) one, other contradict each "
+                                         "other: .* (remove one, or give) .*the same motion"):
+        Simulation(driven_twice(build(0.3), build(0.5)), 0.01)
+    Simulation(driven_twice(build(0.3), build(0.3)), 0.01)
+
+
+def test_what_has_no_accelerations_is_named():
+    """Two balls that are 3e-7 apart between bodies that move."""
+    model = Model()
+    model.gravity((0.0, -9.81, 0.0))
+    first = model.node("a", (0.0, 0.0, 0.0))
+    model.rigid_body("b", first, 2.0, np.diag([0.1, 0.2, 0.3]), centre=(1.0, 0.1, 0.0))
+    pin = model.attach("pin", (1.0, 0.0, 0.0), first)
+    second = model.node("p", (1.0, 0.0, 0.0))
+    model.rigid_body("c", second, 2.0, np.diag([0.1, 0.2, 0.3]), centre=(1.5, 0.1, 0.0))
+    model.spherical(second, pin, name="one")
+    model.spherical(model.attach("f", (1.0 + 3e-7, 0.0, 0.0), second),
+                    model.attach("e", (1.0 + 3e-7, 0.0, 0.0), first), name="other")
+    model.spherical(first)
+    with pytest.raises(InputError, match="no accelerations: .* as the forces of one, other do not "
+                                         "settle: their constraints nearly repeat"):
+        simulate(model, 0.01, 1.0)

@@ -53,6 +53,18 @@ def driven(other: float) -> Model:
 def test_redundant_drives_that_demand_different_accelerations():
     assert set(Simulation(driven(0.2), 0.01).start.redundant)
     for other in (0.3, -0.2, 0.2 * (1 + 1e-4)):
-        with pytest.raises(InputError, match="the constraints contradict each other at .*: they "
-                                             "demand different values of the same acceleration"):
+        with pytest.raises(InputError, match="the constraints of one, two contradict each "
+                                             "other: they demand different values of the "
+                                             "same acceleration"):
             Simulation(driven(other), 0.01)
+
+
+def test_growth_of_a_rigid_spin_is_rounding():
+    """About its largest principal axis it is stable: what grows does so by rounding alone."""
+    model = Model()
+    model.rigid_body("top", model.node("top", (0.0, 0.0, 0.0)), 2.0,
+                     TURN @ np.diag([0.1, 0.2, 0.25]) @ TURN.T)
+    found = campbell(model, [50.0, 1e4], TURN[:, 2], 5)
+    assert np.abs(found.growth).max() > 0.0
+    assert (np.abs(found.growth) <= found.rounding).all()
+    assert "1e4" not in repr(found) and repr(found).split()[-1] == "0"

@@ -48,7 +48,7 @@ def remarks(run: Recording) -> dict[str, str]:
     work = part.recorded("works").sum(axis=1)
     h = float(run.rows[-1, RECORD_T]) / max(int(run.state.control.steps), 1)
     if "balance" not in by_key:
-        by_key |= _grown(part, h, kinetic, strain, kinetic + strain + potential, work)
+        by_key |= _grown(part, h, kinetic, strain, potential, work)
     if kinetic.max() > NO_MOTION * (np.abs(potential).max() + strain.max()):
         states = {int(np.argmax(kinetic)), int(np.argmax(strain))}
         by_key |= _vibrations(part, sorted(states), h, kinetic.max())
@@ -59,13 +59,17 @@ def remarks(run: Recording) -> dict[str, str]:
     return by_key
 
 
-def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, energy: NDArray,
+def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, potential: NDArray,
            work: NDArray) -> dict[str, str]:
     """Whether energy grows that nothing supplies: of all that there is, or of vibrations."""
-    grown = increase(energy, work) / max((kinetic + strain).max(), 1e-300)
+    inner = kinetic + strain
+    energy, largest = inner + potential, inner.max()
+    grown = (increase(energy, work) - energy_balance.rounded(inner, potential)) / max(
+        largest, 1e-300)
     if grown > GROWN:
+        deforms = part.model.bodies and strain.max() > GROWN * largest
         cause = ("vibrations of a strongly bent body; take a smaller step, divide the body, or "
-                 "keep the position of a node off the line of the others" if part.model.bodies else
+                 "keep the position of a node off the line of the others" if deforms else
                  "the fastest motion of its rigid parts; take a smaller step, or rho below 1")
         return {"growth": f"energy grows by {grown:.2g} of its maximum "
                 f"although no work is done on the model (limit {GROWN:g}): the steps do not "
@@ -77,10 +81,12 @@ def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, energy:
         return {}
     # the gain is of second order in the step
     step = h * np.sqrt(WAVERS * most / rise)
+    cause = ("bodies that bend far exchange energy between vibrations" if part.model.bodies else
+             "springs exchange energy with what moves")
+    predicted = " (sebody.analysis.energy_gain predicts it)" * bool(part.model.bodies)
     return {"growth": f"energy grows by {rise / most:.2g} of the largest strain energy although no "
-            f"work is done on the model (limit {WAVERS:g}): bodies that bend far exchange energy "
-            "between vibrations, and the steps follow it to second order; below a step of "
-            f"{step:.2g} the gain is within the limit (sebody.analysis.energy_gain predicts it)"}
+            f"work is done on the model (limit {WAVERS:g}): {cause}, and the steps follow it to "
+            f"second order; below a step of {step:.2g} the gain is within the limit{predicted}"}
 
 
 def _turned(part: Recording, h: float) -> float:
