@@ -42,23 +42,27 @@ def single(model: Model, values: dict, h: float, t_end: float, scheme=None):
             one.reset()
 
 
-def linkage() -> Model:
+def linkage(shift: tuple[float, float] = (0.0, 0.0)) -> Model:
     """A planar crank, coupler of option C and rocker in general position, driven by a torque."""
     made = Model(planar=True)
-    crank = made.node("crank", (0.3, -0.1))
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        return x + shift[0], y + shift[1]
+
+    crank = made.node("crank", at(0.3, -0.1))
     made.fix(crank, "position")
-    made.rigid_body("wheel", crank, 1.3, 0.05, (0.35, -0.06))
-    pin = made.attach("pin", (0.55, 0.2), crank)
+    made.rigid_body("wheel", crank, 1.3, 0.05, at(0.35, -0.06))
+    pin = made.attach("pin", at(0.55, 0.2), crank)
     foot = made.node("foot", pin.point, at=pin)
-    tip = made.node("tip", (1.6, 0.9))
+    tip = made.node("tip", at(1.6, 0.9))
     section = Section(area=4e-4, inertia_y=1.4e-8, inertia_z=1.4e-8, torsion=2.2e-8,
                       youngs_modulus=7e10, poisson_ratio=0.3, density=2.7e3)
     made.beam("rod", (foot, tip), section, elements=4, bodies=1, modes=2)
-    rocker = made.node("rocker", (1.8, -0.2))
+    rocker = made.node("rocker", at(1.8, -0.2))
     made.fix(rocker, "position")
-    made.rigid_body("arm", rocker, 0.8, 0.09, (1.7, 0.3))
+    made.rigid_body("arm", rocker, 0.8, 0.09, at(1.7, 0.3))
     made.spherical(made.attach("elbow", tip.point, rocker), tip)
-    wall = made.node("wall", (2.5, 1.5))
+    wall = made.node("wall", at(2.5, 1.5))
     made.fix(wall)
     made.spring(tip, wall, stiffness=30.0, damping=0.4, name="spring")
     made.torque(crank, 1.0, [(0, 0.5), (0.1, 2.0)], name="motor")

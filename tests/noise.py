@@ -5,7 +5,7 @@ differently. Changes of its inputs by one unit are of the same kind and size, so
 what two ways to compute the same may differ by, which no literal in a test can know.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,8 +46,18 @@ def noise(compute: Callable[..., ArrayLike], *inputs: ArrayLike, most: float) ->
     AssertionError
         The noise is more than that.
     """
-    rng, result = np.random.default_rng(len(inputs)), np.asarray(compute(*inputs))
-    moved = np.max([np.abs(np.asarray(compute(*(neighbours(one, rng) for one in inputs))) - result)
-                    for _ in range(TRIALS)], axis=0)
-    assert SAFE * moved.max() <= most * np.abs(result).max(), moved.max() / np.abs(result).max()
+    rng = np.random.default_rng(len(inputs))
+    return spread(compute(*inputs), (compute(*(neighbours(one, rng) for one in inputs))
+                                     for _ in range(TRIALS)), most)
+
+
+def spread(result: ArrayLike, others: Iterable[ArrayLike], most: float) -> NDArray:
+    """`SAFE` times the most by which others, which only rounding sets apart, differ from a result.
+
+    So do results of a model that stands elsewhere: the digits of its places are others then.
+    Arguments, result and exception are those of `noise`.
+    """
+    own = np.asarray(result)
+    moved = np.max([np.abs(np.asarray(other) - own) for other in others], axis=0)
+    assert SAFE * moved.max() <= most * np.abs(own).max(), moved.max() / np.abs(own).max()
     return SAFE * moved

@@ -227,7 +227,7 @@ def _correct(system, state):
         control.wanted = EVALUATED
     ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
                                                        and control.fresh >= MOST_MATRICES)
-    if ended and stays and norm <= clock.floor * _fastest(system):
+    if ended and norm <= clock.floor * _fastest(system):
         return DONE         # frames of bodies are found to rounding, and so are their forces
     return FAILED if ended else SOLVE
 
