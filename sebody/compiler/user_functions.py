@@ -52,9 +52,9 @@ class UserFunction:
         """Forget the last fault."""
         self.record[FAULT] = 0.0
 
-    def fault(self, since: float) -> str:
-        """What the function did at its last fault, and when; empty if it was before a time."""
-        if not (self.record[FAULT] and self.record[TIME] >= since):
+    def fault(self, since: float, until: float = np.inf) -> str:
+        """What the function did at its last fault, and when; empty if it was at another time."""
+        if not (self.record[FAULT] and since <= self.record[TIME] <= until):
             return ""
         t, others = float(self.record[TIME]), self.record[OTHERS:].copy()
         others.flags.writeable = False
@@ -82,9 +82,9 @@ class ControlFunction(UserFunction):
         super().__init__(function, 1 + sum(sizes))
         self.sizes = sizes
 
-    def fault(self, since: float) -> str:
-        """What the controller did at its last fault, and when; empty if it was before a time."""
-        if not (self.record[FAULT] and self.record[TIME] >= since):
+    def fault(self, since: float, until: float = np.inf) -> str:
+        """What the controller did at its last fault, and when; empty if it was at another time."""
+        if not (self.record[FAULT] and since <= self.record[TIME] <= until):
             return ""
         t = float(self.record[TIME])
         inputs = np.split(self.record[OTHERS:].copy(), np.cumsum(self.sizes)[:-1])

@@ -113,8 +113,17 @@ def _check_turn(one: Element, axis: NDArray | None, joint: Joint) -> None:
     if joint.kind in RIGID:
         raise InputError(f"{one.name!r} acts on the angle of two nodes that {joint.kind} "
                          f"{joint.name!r} keeps from turning: leave it out, or give another joint")
-    if axis is not None and joint.kind in HINGES and abs(joint.axis @ axis) < 1.0 - PARALLEL:
+    if axis is None:
+        return
+    if joint.kind in HINGES and abs(joint.axis @ axis) < 1.0 - PARALLEL:
         raise _forbidden(one, axis, joint, "about")
+    if joint.kind == "universal":
+        first, second, normal = joint.own_axes.columns.T
+        if abs(normal @ axis) > 1.0 - PARALLEL:
+            raise InputError(
+                f"{one.name!r} is about {vector(axis)}, which {joint.kind} {joint.name!r} forbids, "
+                f"since it turns about {vector(first)} and {vector(second)}: give one of these as "
+                "axis=")
 
 
 def _forbidden(one: Element, axis: NDArray, joint: Joint, how: str) -> InputError:

@@ -5,6 +5,8 @@ A function has a fault where it raises, or gives what is not finite.
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
 from sebody.model.mechanism import Mechanism
@@ -51,9 +53,10 @@ def forget(model: Mechanism) -> None:
         function.forget()
 
 
-def fault(model: Mechanism, since: float) -> str:
-    """The first function with a fault at a time or later, and what it did; empty if none has."""
+def fault(model: Mechanism, since: float, until: float = np.inf) -> str:
+    """The first function whose last fault was between two times, and what it did; empty if none.
+    """
     for what, function in functions(model):
-        if did := function.fault(since):
+        if did := function.fault(since, until):
             return f"{what} {did}: correct it"
     return ""

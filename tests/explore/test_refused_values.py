@@ -1,5 +1,7 @@
 """Values that builders refuse: of ensembles, sweeps and gradients run by run."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -102,3 +104,21 @@ def test_in_a_sweep_others_go_on(tmp_path, capsys, monkeypatch):
     said = capsys.readouterr().out
     assert "3 of 3 runs done, 1 failed" in said
     assert "1 x 'buffer': it starts at 0, beyond the limits -0.4 and -0.1" in said
+
+
+def test_a_fault_of_a_function_is_the_reason_of_the_runs_that_meet_it():
+    """A table of torques that ends at 0.02: no sentence on matrices, or on Newton's iteration."""
+    table = np.array([1.0, 2.0, 1.5])
+
+    def torque(t: float) -> float:
+        return table[int(t * 100.0) + 1]
+
+    model = Model()
+    model.rigid_body("leaf", model.node("a", (0.1, 0.2, 0.3)), 1.0, (1.0, 2.0, 3.0))
+    model.revolute("a", (0.2, 0.3, 1.0), name="hinge")
+    model.torque("a", (0.2, 0.3, 1.0), torque, name="push")
+    outcome = Ensemble(model, 0.01).run({"leaf.mass": [1.0, 1.2]}, 0.1, {"angle": "hinge.angle"})
+    assert len(outcome.failures) == 2
+    for reason in outcome.failures.values():
+        assert re.match("stopped at t = 0.0[12][0-9]*: the function of 'push' raised IndexError: "
+                        "index 3 is out of bounds .*: correct it", reason), reason

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, rest_to_rest, simulate
+from sebody import InputError, Model, ramp, rest_to_rest, simulate
 
 TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
 AXIS, ACROSS, OTHER = TURN.T
@@ -80,6 +80,15 @@ def test_the_default_axis_is_that_of_the_one_hinge():
     assert axis_of(model.torsion_spring("wrist", 1.0)) == pytest.approx(OTHER)
 
 
+@pytest.mark.parametrize("axis", [AXIS, ACROSS])
+def test_a_universal_joint_is_driven_about_either_axis(axis):
+    model = door()
+    model.rigid_body("second", model.node("b", PLACE), 1.0, (1, 1, 1))
+    model.universal("b", ACROSS, AXIS, to="a")
+    model.drive_angle("b", ramp(0.5), axis=axis, to="a")
+    assert simulate(model, 0.01, 0.1)["b.rotation"].shape == (11, 3, 3)
+
+
 def test_an_attached_node_turns_with_its_root():
     model = door()
     model.attach("edge", PLACE + ACROSS, "a")
@@ -94,6 +103,9 @@ MOTION = rest_to_rest(1.0, 1.0)
      "'coil' is about .* which revolute 'hinge' forbids, since it turns about .*: give the joint"),
     (lambda m: m.drive_angle("a", MOTION, axis=(0, 0, 1), name="motor"),
      "'motor' is about .*0, 0, 1.* which revolute 'hinge' forbids"),
+    (lambda m: (m.universal("b", ACROSS, AXIS, to="a", name="cross"),
+                m.drive_angle("b", MOTION, axis=np.cross(AXIS, ACROSS), to="a", name="motor")),
+     "'motor' is about .* which universal 'cross' forbids, since it turns about .* and .*: give"),
     (lambda m: m.torsion_spring("hinge", K, axis=AXIS),
      "torsion spring is given joint 'hinge', which has an axis and two nodes: leave axis and to"),
     (lambda m: m.drive_angle("hinge", MOTION, to="b"), "drive is given joint 'hinge'"),

@@ -35,6 +35,7 @@ from sebody.results.naming import look_up, split
 from sebody.results.nodal import MOTIONS
 from sebody.results.recording import Recording
 from sebody.results.tapes import States
+from sebody.runs import user_faults
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
@@ -239,8 +240,10 @@ class Course:
             self.take(record.rows[:state.control.recorded])
             state.control.recorded = 0
         if code == FAILED:
-            reason = REASONS[int(state.control.reason)]
-            self.reason = f"stopped at t = {state.clock.time:.6g}: {reason}"
+            clock = state.clock
+            reason = (user_faults.fault(run.model, clock.time, clock.time + clock.step)
+                      or REASONS[int(state.control.reason)])
+            self.reason = f"stopped at t = {clock.time:.6g}: {reason}"
         return code in (DONE, FAILED)
 
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
