@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
-from sebody import InputError, Model, simulate
+from sebody import InputError, Model, Simulation, simulate
 from sebody.analysis import contributions
+from sebody.assembly.numbering import coordinates
+from sebody.gradients.ranking import ranked
+from sebody.gradients.simplifications import Deformation
 from sebody.model.variants import keep_modes, rigid, with_options
 from sebody.runs.schemes import generalized_alpha
 from tests import differentiated as scenes
@@ -74,6 +77,41 @@ def test_order_and_table():
     lines = str(found).splitlines()
     assert len(lines) == 3 + len(found.rows) and lines[2].split()[0] == one.body
     assert {row.body for row in found.rows} == {"rod", "crank"}
+
+
+def test_ranks_are_by_the_quantity_that_changes_most():
+    """Whichever of the quantities that is, each relative to its own largest change."""
+    t = np.array([0.0, 0.5, 1.0])
+    values = {"far": np.array([[1.0, 0.0], [3.0, 0.0], [5.0, 1.0]]), "near": np.array([0, .1, .2])}
+    changes = {"far": np.zeros((3, 2, 3)), "near": np.zeros((3, 3))}
+    changes["far"][1, 1] = [0.4, -2.0, 1.2]         # over 4: 0.1, 0.5, 0.3
+    changes["near"][2] = [0.08, 0.002, -0.04]       # over 0.2: 0.4, 0.01, 0.2
+    rows, order = ranked(["far", "near"], [(name, "rigid") for name in "abc"], t, values, changes)
+    assert [one.body for one in rows] == ["b", "a", "c"] and order == [1, 0, 2]
+    assert np.allclose([one.sizes for one in rows], [[0.5, 0.01], [0.1, 0.4], [0.3, 0.2]])
+    assert np.allclose([one.times for one in rows], [[0.5, 1.0]] * 3)
+
+
+def test_a_rigid_rotation_loses_nothing_when_made_rigid():
+    """In space, with the accelerations of a constant spin: neither rates nor second rates of (24).
+    """
+    model, spin = scenes.hinged(), 7.0 * scenes.TURN @ np.array([0.4, -0.5, 0.8])
+    run = Simulation(model, 0.005)
+    state, body = run.state, model.bodies["beam"]
+    middle = np.mean([node.point for node in body.nodes], axis=0)
+    state.v[:], state.a[:] = 0.0, 0.0
+    for node in body.nodes:
+        own, turned = (coordinates(run.numbering, one) for one in (node.position, node.rotation))
+        state.v[own] = np.cross(spin, node.point - middle)
+        state.a[own] = np.cross(spin, state.v[own])
+        R = state.R[9 * run.numbering.rotations[node.rotation]:][:9].reshape(3, 3)
+        state.v[turned] = R.T @ spin
+    part = Deformation(body, run.numbering).at(state)
+    largest = np.abs(state.a).max()
+    assert len(part.e) == 9 and np.abs(part.second).max() < 1e-12 * largest
+    assert np.abs(part.e).max() < 1e-12 and np.abs(part.rate).max() < 1e-12 * np.abs(state.v).max()
+    state.a[:] *= 0.5       # what is left over is seen
+    assert np.abs(Deformation(body, run.numbering).at(state).second).max() > 0.1 * largest
 
 
 def test_changes_below_what_the_step_changes_are_marked():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpmath import findroot, mp, mpc
 from numpy.testing import assert_allclose
-from scipy.linalg import expm
+from scipy.linalg import block_diag, expm
 from scipy.signal import lsim
 
 from sebody import InputError, Model, Simulation
@@ -12,6 +12,7 @@ from sebody.analysis import equilibrium, modes, state_space
 from sebody.control import state_feedback
 from sebody.fem import StiffnessSection, planar_beam
 from sebody.reduction import craig_bampton
+from sebody.small_motion.realization import reduced
 
 UNIT = StiffnessSection(axial=1e4, bending_y=1.0, bending_z=1.0, torsion=1.0, mass=1.0,
                         inertia_x=0.0, inertia_y=0.0, inertia_z=0.0)
@@ -160,6 +161,26 @@ def test_reductions():
     n = len(system.A)
     F = expm(t * np.block([[system.A, system.B], [np.zeros((1, n + 1))]]))
     assert_allclose(less.C @ E[:size, size], system.C @ F[:n, n], rtol=1e-7, atol=1e-9)
+
+
+def test_reductions_keep_the_largest_shares_and_the_static_response():
+    """Five modes of known shares, in mixed states: three stay, the others answer without delay."""
+    w, gain = np.array([1.0, 3.0, 7.0, 20.0, 60.0]), np.array([0.2, 3.0, 0.5, 900.0, 40.0])
+    A = block_diag(*([[0.0, 1.0], [-one**2, -0.02 * one]] for one in w))
+    B, C = np.kron(gain, [0.0, 1.0])[:, None], np.kron(np.ones(5), [1.0, 0.0])[None]
+    mixed = np.random.default_rng(4).normal(size=(10, 10))
+    members = reduced(np.linalg.solve(mixed, A @ mixed), np.linalg.solve(mixed, B), C @ mixed,
+                      np.array([[0.25]]), 6)
+    kept = np.sort(w[np.argsort(-gain / w**2)[:3]])
+    poles = np.linalg.eigvals(members["A"])
+    assert_allclose(np.sort(np.abs(poles[poles.imag > 0])), kept, rtol=1e-9)
+
+    def response(A, B, C, D, s):
+        return (C @ np.linalg.solve(s * np.eye(len(A)) - A, B) + D)[0, 0]
+    numbers = [members[name] for name in "ABCD"]
+    assert_allclose(response(*numbers, 0.0), 0.25 + (gain / w**2).sum(), rtol=1e-9)
+    left = ~np.isin(w, kept)
+    assert_allclose(numbers[3], 0.25 + (gain / w**2)[left].sum(), rtol=1e-9)
 
 
 def test_what_is_refused():

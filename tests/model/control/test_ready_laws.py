@@ -50,12 +50,15 @@ def _blocks(whole):
 
 
 @pytest.mark.parametrize("inputs", [1, 2])
-@pytest.mark.parametrize("y", [0.1, 2.0, -2.0])     # within limits; cut off, the integral at rest
-def test_derivatives_of_pid(inputs, y):
+@pytest.mark.parametrize("y, integral", [
+    (0.1, -0.2),                # within limits
+    (2.0, -0.2), (-2.0, -0.2),  # cut off, the integral at rest
+    (0.6, 9.0), (0.1, -9.0)])   # cut off, while the error takes the output back
+def test_derivatives_of_pid(inputs, y, integral):
     """Given in closed form, against differences, which are exact as the law is linear."""
     law = pid(3.0, 0.7, 0.2, filter=20.0, reference=0.4, limit=2.0)
     flow, _, parameters, derivatives = law.flow
-    point = np.array([y, 0.3, -0.2, 0.1])[[0, 2, 3] if inputs == 1 else [0, 1, 2, 3]]
+    point = np.array([y, 0.3, integral, 0.1])[[0, 2, 3] if inputs == 1 else [0, 1, 2, 3]]
 
     def found(z):
         rates, u = np.zeros(2), np.zeros(1)
@@ -86,3 +89,34 @@ def test_the_integral_rests_while_the_output_is_cut_off():
     # the integral stops and goes on within a step: e h of it is left, each time
     assert_allclose(result["hub.rotation"], exact[0], rtol=0, atol=1e-3)
     assert np.abs(result["motor.value"]).max() == 0.6
+
+
+@pytest.mark.parametrize("gain", [2.0, -2.0])
+def test_sampled_integrals_rest_while_the_output_is_cut_off(gain):
+    """The law's own numbers, sample by sample; also where the output falls with the integral.
+
+    The error drives the integral beyond the limit, then back: the output leaves the limit at the
+    next sample, not after as many as it was cut off.
+    """
+    law, T = pid(0.0, gain, reference=1.0, limit=(-0.5, 0.3)), 0.1
+    states, parameters, u = law.states.copy(), law.packed(T), np.zeros(1)
+    integral, found, expected = 0.0, [], []
+    for y in [0.0] * 6 + [1.8] * 9 + [0.4] * 4:
+        law.function(0.0, np.array([y]), states, u, parameters)
+        found.append(u[0])
+        e = 1.0 - y
+        raw = gain * (integral + T * e)
+        expected.append(np.clip(raw, -0.5, 0.3))
+        if raw == expected[-1] or abs(gain * integral) > abs(raw):      # it comes back
+            integral += T * e
+    assert_allclose(found, expected, rtol=1e-14)
+    assert {-0.5, 0.3} <= set(found) and len(set(found)) > 6
+
+
+def test_the_offset_of_a_feedback_is_its_output_at_the_reference():
+    law = state_feedback([[2.0, -0.3], [0.4, 1.5]], reference=[0.2, -0.1], offset=[0.7, -1.1])
+    u, parameters = np.zeros(2), law.packed(0.1)
+    law.function(0.0, np.array([0.2, -0.1]), law.states, u, parameters)
+    assert_allclose(u, [0.7, -1.1])
+    law.function(0.0, np.array([0.5, 0.4]), law.states, u, parameters)
+    assert_allclose(u, [0.7 - 2.0 * 0.3 + 0.3 * 0.5, -1.1 - 0.4 * 0.3 - 1.5 * 0.5])

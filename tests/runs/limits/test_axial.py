@@ -194,3 +194,27 @@ def test_runs_and_small_motion_warn_once():
     _, messages = said(lambda: simulate(model, 1e-3, 0.1))
     strong = [m for m in messages if m.startswith("tension")]
     assert len(strong) == 1 and "(also " in strong[0] and strong[0].count("'") >= 4
+
+
+def random_rows(seed):
+    """Three points in a plane, free in all directions, and rotations that one direction lets go."""
+    rng = np.random.default_rng(seed)
+    points = np.array([[1.0, 0.1, 0.0], [-0.6, 0.9, 0.0], [-0.4, -1.0, 0.0]])
+    turn = Rotation.random(random_state=seed).as_matrix()
+    own = rng.normal(size=(9, 9))
+    directions = np.outer(turn[:, 2], turn[:, 2]) if seed % 2 else np.diag(rng.random(3))
+    return Axial(own @ own.T, np.eye(9).reshape(3, 3, 9), points @ turn.T, directions[None],
+                 np.eye(9))
+
+
+def test_no_share_is_above_its_bound():
+    """The bound is by traces: of a virial that presses from all sides, 0.47 of it is reached."""
+    shares = []
+    for seed in range(40):
+        rows, rng = random_rows(seed), np.random.default_rng(100 + seed)
+        states = 1e-6 * rng.normal(size=(20, 9))
+        states[0] = np.linalg.solve(rows.stiffness, 1e-6 * rows.points.ravel())     # all outwards
+        shares += [rows.load(y).share / bound for y, bound in zip(states, rows.bound(states),
+                                                                 strict=True)]
+    assert max(shares) < 1.0
+    assert max(shares) > 0.45

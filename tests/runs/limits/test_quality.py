@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -261,3 +262,12 @@ def test_energy_that_grows_in_what_is_rigid_is_no_matter_of_bent_bodies(monkeypa
     assert message.startswith("energy grows by ")
     assert message.endswith("the steps do not resolve the fastest motion of its rigid parts; take "
                             "a smaller step, or rho below 1")
+
+
+def test_energy_that_grows_after_it_has_fallen_is_told():
+    """By numbers: from 1 it falls to 0.2 and grows to 0.5, which is below the first."""
+    energy = np.array([1.0, 0.6, 0.2, 0.35, 0.5, 0.45])
+    part = SimpleNamespace(model=SimpleNamespace(bodies={}))
+    none = np.zeros(6)
+    told = quality._grown(part, 0.01, energy, none, none, none)["growth"]
+    assert told.startswith("energy grows by 0.3 of its maximum although no work is done")
