@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from sebody.contract.counts import Counts
 from sebody.reduction.invariants import InertiaInvariants
+from sebody.reduction.massless import units
 
 # Of what an inertia, or a geometric stiffness beside inertias, can be. High modes are exact to
 # 1e-16 of the ratio of squared frequencies: with a hundred modes a beam is left with 1e-10 in place
@@ -21,6 +22,7 @@ ROUNDING = 1e-9
 STIFF = 1e-13           # the same of a stiffness: strains are small differences of large forces
 CLEAR = 0.43            # of a unit vector: its largest component is more; no usual sine or cosine
 SUMMED = 8 * 2.2e-16    # of what a sum would be if all its terms had one sign
+LIGHT = 1e-6            # root of a mass that is rounding, over that of a usual one of its stiffness
 COUPLED = 1e-6          # less than this part of what they can be leaves coordinates apart
 
 
@@ -115,20 +117,27 @@ def grouped(mass: NDArray, stiffness: NDArray) -> NDArray:
     return np.lexsort((np.arange(free), labels[:free], -sizes, slaved))
 
 
-def without_rounding(values: InertiaInvariants, of_stresses: float) -> InertiaInvariants:
+def without_rounding(values: InertiaInvariants, of_stresses: float, stiffness: NDArray
+                     ) -> InertiaInvariants:
     """Constants with zeros where rotations and sums leave but rounding.
 
     What an entry can be follows from the sizes of its coordinates' displacements. Rates have no
     larger mass, but slaved coordinates may have one of rounding where the rates count by their
-    rigid part (`InertiaInvariants.rigidly_followed`), as in symmetric bodies.
+    rigid part (`InertiaInvariants.rigidly_followed`), as in symmetric bodies. Coordinates without
+    mass, as rotations of lumped masses, count by their stiffness: beside masses that are rounding
+    all else would be.
 
     Parameters
     ----------
     of_stresses : float
         The same as `ROUNDING`, of geometric stiffnesses.
+    stiffness : (n, n)
     """
     i, n = values, len(values.E)
     of_z = np.sqrt(np.maximum(np.abs(np.diag(i.Mbar)), np.abs(np.einsum("kkii->i", i.J2))))
+    size = units(i.Mbar[:n, :n], stiffness)
+    size = size * np.median(of_z[:n] / size)
+    of_z[:n] = np.where(of_z[:n] > LIGHT * size, of_z[:n], size)
     Ghat = [_small(one, of_z[:n], of_stresses) for one in i.Ghat]
     return replace(
         i, K=_small(i.K, of_z, ROUNDING), J2=_small(i.J2, of_z, ROUNDING),

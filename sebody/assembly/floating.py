@@ -63,9 +63,8 @@ def floating_constants(invariants: InertiaInvariants, stiffness: NDArray, condit
     coordinates, basis = free_coordinates(conditions, counts, turn)
     by = of_coordinates(turn.T, counts)
     of_z = by.T @ basis
-    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis),
-                               of_stresses)
     S, C = (None if A is None else stiff_of(A, of_z) for A in (stiffness, damping))
+    inertia = without_rounding(_restricted(invariants.rotated(turn.T, by), basis), of_stresses, S)
     order = grouped(inertia.Mbar, S)
     coordinates = coordinates._replace(order=order)
     inertia = _restricted(inertia, np.eye(len(order))[:, order])

@@ -1,6 +1,7 @@
 """Faces and edges of cells, by meshio's names and order of nodes (that of VTK).
 
-Second-order cells have the corners of first-order ones, then the middles of their edges.
+Second-order cells have the corners of first-order ones, then the middles of their edges; those of
+27 nodes have the middles of their faces, too, and their own.
 """
 
 # corners of the faces, whose normals point outwards
@@ -13,6 +14,8 @@ FACES = {
     "triangle": ((0, 1, 2),),
     "quad": ((0, 1, 2, 3),),
 }
+# place of the middle of each of these faces among those of all
+MIDDLES = {"hexahedron": (4, 5, 2, 1, 3, 0)}
 SOLIDS = "tetra", "hexahedron", "wedge", "pyramid"
 # edges in the order of their middle nodes
 EDGES = {

@@ -21,7 +21,7 @@ ROUND = 2e-3        # of the radius, by which corners may be off a cylinder
 _OFF = 0.02         # the same of the size of a face, where a cylinder is typed
 _ARC = 0.05         # mean square of the normals' second direction, of an arc of some 45 degrees
 _RADIAL = 0.8       # least cosine between the normal of a facet and the arm of its middle
-_CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "line": 2, "line3": 2}
+_CORNERS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4, "line": 2, "line3": 2}
 
 
 class Cylinder(NamedTuple):

@@ -38,7 +38,17 @@ def face_functions(kind: str, points: NDArray) -> tuple[NDArray, NDArray]:
                     np.broadcast_to([[-0.5], [0.5]], (len(s), 2, 1)))
         values = np.stack([s * (s - 1) / 2, s * (s + 1) / 2, 1 - s**2], axis=1)
         return values, np.stack([s - 0.5, s + 0.5, -2 * s], axis=1)[:, :, None]
+    if kind == "quad9":
+        return _biquadratic(points)
     return _quad(points, kind == "quad8")
+
+
+def _biquadratic(points: NDArray) -> tuple[NDArray, NDArray]:
+    """Products of the functions of two lines of three nodes: corners, middles of edges, middle."""
+    (u, du), (v, dv) = (face_functions("line3", points[:, [axis]]) for axis in (0, 1))
+    along, across = [0, 1, 1, 0, 2, 1, 2, 0, 2], [0, 0, 1, 1, 0, 2, 1, 2, 2]
+    return u[:, along] * v[:, across], np.stack(
+        [du[:, along, 0] * v[:, across], u[:, along] * dv[:, across, 0]], axis=2)
 
 
 def _points(kind: str) -> tuple[NDArray, NDArray]:

@@ -11,16 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.fem.cells import CORNERS, EDGES, SOLIDS, faces_of
+from sebody.fem.cells import CORNERS, EDGES, MIDDLES, SOLIDS, faces_of
 from sebody.fem.face_functions import face_rule
 from sebody.fem.model import FEModel
 
 _QUADRATIC = {"tetra10": "tetra", "hexahedron20": "hexahedron", "wedge15": "wedge",
-              "triangle6": "triangle", "quad8": "quad"}
+              "hexahedron27": "hexahedron", "triangle6": "triangle", "quad8": "quad"}
 _REVERSED = {"line": [1, 0], "line3": [1, 0, 2], "triangle": [0, 2, 1],
              "triangle6": [0, 2, 1, 5, 4, 3], "quad": [0, 3, 2, 1],
-             "quad8": [0, 3, 2, 1, 7, 6, 5, 4]}
-_FACE_KINDS = {2: "line", 3: "line3", 4: "quad", 6: "triangle6", 8: "quad8"}
+             "quad8": [0, 3, 2, 1, 7, 6, 5, 4], "quad9": [0, 3, 2, 1, 7, 6, 5, 4, 8]}
+_FACE_KINDS = {2: "line", 3: "line3", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
+_WITH_MIDDLES = {"hexahedron27"}
 
 
 def faces_within(model: FEModel, nodes: Iterable[int]) -> list[tuple[str, NDArray]]:
@@ -29,7 +30,8 @@ def faces_within(model: FEModel, nodes: Iterable[int]) -> list[tuple[str, NDArra
     Returns
     -------
     list of (kind, (m, k) of int)
-        'triangle', 'triangle6', 'quad' or 'quad8' with their nodes; in a plane 'line' or 'line3'.
+        'triangle', 'triangle6', 'quad', 'quad8' or 'quad9' with their nodes; in a plane 'line' or
+        'line3'.
     """
     inside = np.zeros(len(model.coordinates), dtype=bool)
     inside[list(nodes)] = True
@@ -72,8 +74,9 @@ def _faces_of(kind: str, planar: bool) -> Iterator[tuple[str, list[int]]]:
             columns = [*edge, *([CORNERS[base] + k] if kind in _QUADRATIC else [])]
             yield _face_kind(2, len(columns)), columns
         return
-    for face in faces_of(kind, count):
-        yield _face_kind(3 if len(face) in (3, 6) else 4, len(face)), list(face)
+    for k, face in enumerate(faces_of(kind, count)):
+        middle = [count + MIDDLES[base][k]] if kind in _WITH_MIDDLES else []
+        yield _face_kind(3 if len(face) in (3, 6) else 4, len(face) + len(middle)), [*face, *middle]
 
 
 def _face_kind(corners: int, nodes: int) -> str:

@@ -148,8 +148,17 @@ def _stiffening(fe_model: FEModel, boundary: Boundary, component: ComponentModes
             G[k] += boundary.second_order(forces, prestresses[n:, k], own)
         return (G + G.transpose(0, 2, 1)) / 2
 
+    # rotations of lumped masses have no inertia, but turn what is fixed to them
+    turning = fe_model.rows[:, body.coordinates.shape[1]:]
+    massless = (turning >= 0) & (fe_model.mass.diagonal()[turning] == 0.0)
+
     def largest(motions: NDArray) -> NDArray:
-        return integrals.largest(ties.spread(motions[:n]))
+        moved = ties.spread(motions[:n])
+        found = integrals.largest(moved)
+        if massless.any():
+            turned = np.where(massless[..., None], moved[turning], 0.0)
+            found = np.maximum(found, np.linalg.norm(turned, axis=1).max(axis=0, initial=0.0))
+        return found
 
     held, size = boundary.size, integrals.size
     dimension = body.coordinates.shape[1]

@@ -43,6 +43,7 @@ from sebody.reduction.constants import with_constants, with_shapes
 from sebody.reduction.factor import Factor, is_strainless
 from sebody.reduction.free import check_connected, check_free
 from sebody.reduction.loads import fe_loads, with_residual_modes
+from sebody.reduction.massless import MASSLESS
 from sebody.reduction.missing import missing_of
 from sebody.reduction.rigid_motions import strainless_coordinates
 from sebody.reduction.ties import Ties
@@ -249,11 +250,18 @@ class _FreeModes:
 
 def _free_interior(ties: Ties, stiffness: sparse.csc_array, mass: sparse.csc_array, watch: Watch,
                    factor: Factor | None = None) -> tuple[ClampedInterior, NDArray]:
-    """The free body without momenta, and its rigid motions of unit modal mass."""
+    """The free body without momenta, and its rigid motions of unit modal mass.
+
+    A rigid motion without inertia has no momentum: the mean of the motion itself is zero.
+    """
     rigid = ties.rigid / ties.lengths[:, None]
-    root = linalg.cholesky(rigid.T @ (mass @ rigid))
-    rigid = linalg.solve_triangular(root, rigid.T, trans="T").T
-    momenta = sparse.csr_array((mass @ rigid).T)
+    inertia = rigid.T @ (mass @ rigid)
+    unit = np.sqrt(np.diag(inertia).clip(np.finfo(float).tiny))
+    values, turn = np.linalg.eigh(inertia / np.outer(unit, unit))
+    bare = values <= MASSLESS * values[-1]      # a bar with lumped masses spins without inertia
+    turn = turn / unit[:, None]
+    held, rigid = rigid @ turn[:, bare], rigid @ (turn[:, ~bare] / np.sqrt(values[~bare]))
+    momenta = sparse.csr_array(np.hstack([mass @ rigid, held / np.linalg.norm(held, axis=0)]).T)
     return ClampedInterior(stiffness, mass, np.zeros(0, dtype=int), momenta, ties.rigid,
                            ties.lengths, ties.name, watch, factor), rigid
 

@@ -41,6 +41,9 @@ from sebody.reduction.internal_stresses import divide
 _NULL = 1e-8
 _ROUNDING = 1e-10  # of a geometric stiffness that is none, relative to the largest
 _REPEATED = 1e-6  # relative distance of squared periods that count as equal
+# Squared period of motions without mass, which follow statically, over the longest one: what a
+# prestress changes of them is their stiffness alone.
+_STATIC = 1e-12
 _LOWEST = 6     # frequencies that count, or as many as elastic boundary motions if they are more
 # What a prestress changes is measured in squared frequencies of the free body, when it, or the load
 # it answers, moves the body by a tenth of its size or turns it by 0.1 rad. So far a tension would
@@ -116,8 +119,8 @@ class GeometricStiffness:
         momenta = mass @ rigid
         relative = mass - momenta @ np.linalg.pinv(rigid.T @ momenta) @ momenta.T
         # of the free body: inverse squares of frequencies, vibrations of unit strain energy
-        self._inverse, self._vibrations = np.linalg.eigh(
-            self._elastic.T @ relative @ self._elastic)
+        inverse, self._vibrations = np.linalg.eigh(self._elastic.T @ relative @ self._elastic)
+        self._inverse = np.maximum(inverse, _STATIC * (inverse.max(initial=0.0) or 1.0))
 
     def stiffening(self, loads: NDArray, answers: NDArray,
                    mass: Callable[[NDArray], NDArray]) -> Stiffening:

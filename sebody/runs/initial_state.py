@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from copy import copy
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +53,7 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     _check(residuals, _lengths(model, system, numbering, state)[multipliers], "position",
            multipliers, numbering, "start from a state the joints allow")
     system.inertias[:numbering.free] = part_sizes(masses, system)
-    solver = Solver(masses, system, numbering)
+    solver = Solver(masses, system, numbering, partial(_resisting, system, state))
     system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
     tune(model, system, numbering, state,
          _resisting(system, state) if solver.massless else masses)

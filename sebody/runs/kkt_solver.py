@@ -215,8 +215,8 @@ class Relaxed:
         return np.abs(self.factors.U.diagonal())
 
     def unmoved(self, vector: NDArray) -> NDArray:
-        """The part of a vector, in scaled unknowns, on which the matrix does not act."""
-        return self.factors.solve(self.scale**2 * self.regularization * vector)
+        """The part of (n,) or (n, k), in scaled unknowns, on which the matrix does not act."""
+        return self.factors.solve(((self.scale**2 * self.regularization) * vector.T).T)
 
     def least(self, right: NDArray) -> tuple[NDArray, NDArray]:
         """Solution of least norm, and the scaled residuals that remain."""

@@ -98,6 +98,8 @@ class Solver:
     ----------
     matrix : (n, n)
         Masses and constraints.
+    resisting : function
+        The same with stiffness.
 
     Attributes
     ----------
@@ -111,10 +113,11 @@ class Solver:
     Raises
     ------
     InputError
-        Something without mass can move.
+        Something with neither mass nor stiffness can move.
     """
 
-    def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering):
+    def __init__(self, matrix: csc_matrix, system: System, numbering: Numbering,
+                 resisting: Callable[[], csc_matrix]):
         self.system = Scaled(matrix, units(matrix, system))
         self.names, self.multiplying = numbering.names, multiplying(system)
         self.redundant: tuple[str, ...] = ()
@@ -124,7 +127,7 @@ class Solver:
         if self.system.suspicious:
             system.massless_axes[:matrix.shape[0]] = massless_axes(matrix, system)
             self.regularized = Relaxed(matrix, part_sizes(matrix, system), system)
-            self._check_mass(system)
+            self._check_mass(system, resisting)
             self._find_redundant(matrix, system)
 
     def check(self, residual: NDArray) -> None:
@@ -180,8 +183,8 @@ class Solver:
             multipliers = np.where(self.multiplying, self.regularized.unmoved(multipliers), 0.0)
         return multipliers
 
-    def _check_mass(self, system: System) -> None:
-        """Refuse a motion that the constraints leave free and that has no mass."""
+    def _check_mass(self, system: System, resisting: Callable[[], csc_matrix]) -> None:
+        """Refuse a motion that the constraints leave free and that has no mass and no stiffness."""
         moving = ~multiplying(system)
         probe = np.where(moving, np.random.default_rng(0).normal(size=moving.size), 0.0)
         for _ in range(PROBES):
@@ -190,10 +193,35 @@ class Solver:
             if not probe.any():
                 return
         shape = self.regularized.scale * probe / np.linalg.norm(probe)
-        if np.linalg.norm(probe) > HALF and shape @ (self.regularized.matrix @ shape) < MASSLESS:
-            name = self.names[int(np.argmax(np.abs(probe)))]
-            raise InputError(f"the mass matrix is singular: {name} moves no mass; add mass or "
-                             "inertia there, fix it, or leave it out")
+        if np.linalg.norm(probe) <= HALF or shape @ (self.regularized.matrix @ shape) >= MASSLESS:
+            return
+        held, motion = self._held(system, resisting())
+        if not held:
+            name = self.names[int(np.argmax(np.abs(probe if motion is None else motion)))]
+            raise InputError(f"the mass matrix is singular: {name} moves no mass, and nothing "
+                             "stiff holds it; add mass or inertia there, fix it, or leave it out")
+
+    def _held(self, system: System, resisting: csc_matrix) -> tuple[bool, NDArray | None]:
+        """Whether stiffness holds all motions without mass, and a motion that it does not hold.
+
+        Motions are found from all unknowns without inertia at once. What a load adds to the
+        stiffness of a body that turns under it has no part among these motions.
+        """
+        moving = ~multiplying(system)
+        thin = np.flatnonzero((system.massless_axes[:moving.size] > 0.0) & moving)
+        motions = np.zeros((moving.size, thin.size))
+        motions[thin, np.arange(thin.size)] = 1.0
+        for _ in range(PROBES):
+            motions = np.where(moving[:, None], self.regularized.unmoved(motions), 0.0)
+        left, sizes, _ = np.linalg.svd(motions, full_matrices=False)
+        left = left[:, sizes > HALF]
+        if not left.size:
+            return False, None
+        scale = diags(self.regularized.scale)
+        stiffness = (scale @ resisting @ scale).tocsc()
+        own, strengths, _ = np.linalg.svd(left.T @ (stiffness @ left))
+        largest = abs(stiffness[moving][:, moving]).max()
+        return bool(strengths[-1] > MASSLESS * largest), left @ own[:, -1]
 
 
 def _lacks_mass(matrix: csc_matrix, system: System) -> bool:

@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import LinAlgError, null_space
+from scipy.linalg import null_space
 
 from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
 from sebody.basics.tabular import brief, counted
-from sebody.reduction.massless import condensed
+from sebody.reduction.massless import Condensed, condensed
 from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
@@ -114,6 +114,11 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linear
     return Linearization(mass, *(own @ tests.T @ A @ free for A in (C, K)), free, contacts)
 
 
+def _said(following: int) -> str:
+    """What a title says of motions without mass."""
+    return f"; {counted(following, 'motion')} without mass follow statically" if following else ""
+
+
 class Vibrations(NamedTuple):
     """Small undamped vibrations."""
 
@@ -131,10 +136,7 @@ class Vibrations(NamedTuple):
 
     @property
     def _title(self) -> str:
-        title = f"{len(self.omega)} undamped vibrations"
-        if not self.following:
-            return title
-        return f"{title}; {counted(self.following, 'motion')} without mass follow statically"
+        return f"{len(self.omega)} undamped vibrations" + _said(self.following)
 
     @property
     def frequency(self) -> NDArray:
@@ -173,17 +175,9 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
         raise InputError(f"controllers {', '.join(laws)} are continuous, and a closed loop has no "
                          "undamped vibrations: use modes()")
     M, _, K, free = linearize(run)[:4]
-    following = 0
+    own = _with_mass(M, K)
     try:
-        try:
-            squares, shapes = undamped(M, K)
-        except LinAlgError:
-            own = condensed(M, K)
-            squares, shapes = undamped(own.mass, own.stiffness)
-            shapes, following = own.motions @ shapes, own.following
-            if own.bare:
-                raise InputError(f"the model has {counted(own.bare, 'motion')} with neither mass "
-                                 "nor stiffness: hold what moves so, or give it inertia") from None
+        squares, shapes = undamped(own.mass, own.stiffness)
     except ArithmeticError as error:
         raise InputError("the state is not stable: loads that turn with the model make it flutter; "
                          "modes() has the growth of its motions") from error
@@ -191,8 +185,23 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
         raise InputError("the state is not stable: the lowest squared frequency is negative, "
                          f"{squares[0]:.4g}; modes() has the shape and the growth of this motion. "
                          "Start from an equilibrium to which it leads, or hold it")
-    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count], free @ shapes[:, :count],
-                      Shapes(run), following)
+    return Vibrations(np.sqrt(np.maximum(squares, 0.0))[:count],
+                      free @ (own.motions @ shapes[:, :count]), Shapes(run), own.following)
+
+
+def _with_mass(M: NDArray, K: NDArray, C: NDArray | None = None) -> Condensed:
+    """Matrices of what has mass or damping; the rest follows statically.
+
+    Raises
+    ------
+    InputError
+        A motion has neither mass nor stiffness.
+    """
+    own = condensed(M, K, C)
+    if own.bare:
+        raise InputError(f"the model has {counted(own.bare, 'motion')} with neither mass nor "
+                         "stiffness: hold what moves so, or give it inertia")
+    return own
 
 
 def warn_of_spin(run: Simulation | Result, rates: NDArray, what: str) -> None:
@@ -216,13 +225,18 @@ class Modes(NamedTuple):
     shapes: NDArray     # (unknowns, m) complex, of unit length
     of_names: Shapes
     rounding: NDArray   # (m,) how far rounding may move the values [1/time]
+    following: int = 0  # motions without mass, which follow the others statically
 
     def __repr__(self) -> str:
-        return mode_tables.text(f"{len(self.values)} modes of small motion", self.values)
+        return mode_tables.text(self._title, self.values)
 
     def _repr_html_(self) -> str:
         """What notebooks show."""
-        return mode_tables.html(f"{len(self.values)} modes of small motion", self.values)
+        return mode_tables.html(self._title, self.values)
+
+    @property
+    def _title(self) -> str:
+        return f"{len(self.values)} modes of small motion" + _said(self.following)
 
     @property
     def frequency(self) -> NDArray:
@@ -258,7 +272,8 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     Of what spins without `spin=` the matrices are those of the instant: a warning says so.
     """
     M, C, K, free = linearize(run, spin)[:4]
-    roots = eigenvalues(M, C, K)
+    own = _with_mass(M, K, C)
+    roots = eigenvalues(own.mass, own.damping, own.stiffness)
     if spin is None:
         warn_of_spin(run, np.abs(roots.values), "modes")
     # on integrals of controllers' states nothing depends: each has the value 0, which is no mode;
@@ -266,6 +281,6 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
     nearest = np.argsort(np.abs(roots.values), kind="stable")
     counts = np.cumsum(np.where(roots.values[nearest].imag > 0.0, 2, 1))
     order = np.sort(nearest[counts > len(hidden_states(run.model, run.numbering))])
-    shapes = free @ roots.shapes[:, order]
+    shapes = free @ (own.motions @ roots.shapes[:, order])
     return Modes(roots.values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run), roots.rounding[order])
+                 Shapes(run), roots.rounding[order], own.following)

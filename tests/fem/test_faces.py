@@ -17,7 +17,7 @@ def block(kind):
     """A turned and stretched block, 2 x 1 x 1 cells or twelve tetrahedra, of a kind of element."""
     skfem = pytest.importorskip("skfem")
     mesh = {"hexahedron": skfem.MeshHex, "tetra": skfem.MeshTet,
-            "wedge": skfem.MeshWedge1}[kind.rstrip("0125")]()
+            "wedge": skfem.MeshWedge1}[kind.rstrip("01257")]()
     mesh = mesh.refined(1) if kind.startswith("tetra") else mesh
     points, cells = mesh.p.T, mesh.t.T
     if kind.startswith("hexahedron"):
@@ -30,12 +30,29 @@ def block(kind):
         cells = np.take_along_axis(cells, order, axis=1)
     if kind[-1].isdigit():
         points, cells = with_middles(kind, points, cells)
+    if kind == "hexahedron27":
+        points, cells = with_middles_of_faces(points, cells)
     return points * SIZES @ TURN.T + [5, 6, 7], cells
 
 
 EDGES = {"tetra10": [(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)],
          "hexahedron20": [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4),
                           (1, 5), (2, 6), (3, 7)]}
+
+
+EDGES["hexahedron27"] = EDGES["hexahedron20"]
+# those of VTK: x-, x+, y-, y+, z-, z+, and the cell itself
+MIDDLES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7),
+           tuple(range(8))]
+
+
+def with_middles_of_faces(points, cells):
+    for corners in MIDDLES:     # faces of two cells come twice: their places are one
+        own = np.arange(len(points), len(points) + len(cells))
+        points = np.vstack([points, points[cells[:, list(corners)]].mean(axis=1)])
+        cells = np.hstack([cells, own[:, None]])
+    _, first, index = np.unique(points.round(9), axis=0, return_index=True, return_inverse=True)
+    return points[first], index.ravel()[cells]
 
 
 def with_middles(kind, points, cells):
@@ -50,7 +67,8 @@ def model_of(points, cells):
     return FEModel(eye, eye, points, ("x", "y", "z"), cells=cells)
 
 
-@pytest.mark.parametrize("kind", ["hexahedron", "hexahedron20", "tetra", "tetra10", "wedge"])
+@pytest.mark.parametrize("kind", ["hexahedron", "hexahedron20", "hexahedron27", "tetra",
+                                  "tetra10", "wedge"])
 def test_the_surface_of_a_block(kind):
     points, cells = block(kind)
     model = model_of(points, [(kind, cells)])

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sebody.basics.errors import InputError
+from sebody.basics.tabular import counted
 from sebody.explore.inspection.measures import Matrices
 from sebody.io.body_file import BodyFile
 from sebody.reduction.checks import (
@@ -86,10 +87,10 @@ def _mass(numbers: dict) -> list[Finding]:
         following = numbers["frequencies"]["following"]
         listed.append(Finding("caution", "the mass matrix is singular, mostly in "
                               f"{lowest['worst']}: some motion has no inertia"
-                              + f"; in the frequencies {following} such motions follow the others "
-                              "statically" * bool(following),
-                              "give it mass, or hold it by joints; damping by a ratio and SID need "
-                              "inertia of every coordinate"))
+                              + f"; {counted(following, 'motion')} without mass follow the others "
+                              "statically, in these frequencies and in models" * bool(following),
+                              "give mass to what has no stiffness either, or hold it by joints; "
+                              "SID files need inertia of every coordinate"))
     if numbers["mass_geometry_defect"] > _GEOMETRY:
         listed.append(Finding(
             "defect", "the inertia of rigid motion is not that of a body: R^T M R is off by "

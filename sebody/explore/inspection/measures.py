@@ -20,12 +20,11 @@ from sebody.reduction.checks import (
     rigid_residual,
     unit_scale,
 )
-from sebody.reduction.massless import condensed
+from sebody.reduction.massless import condensed, inert
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.runs.limits.thresholds import PERIOD
 
 SHOWN = 12          # frequencies
-_MASSLESS = 1e-12   # eigenvalue of the unit-free mass, relative to the largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,18 +181,13 @@ def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
 
 def _vibrations(body: Matrices) -> tuple[NDArray, NDArray, int, int]:
     """Squares of frequencies, shapes, number of rigid motions among them, motions without mass."""
-    size = np.sqrt(np.outer(*[unit_scale(body.mass, body.names)] * 2))
-    scaled = body.mass / size
-    if np.linalg.eigvalsh(scaled)[0] > _MASSLESS * np.abs(scaled).max():
-        squares, shapes = eigh(body.stiffness / size, scaled)
-        return squares, shapes / np.sqrt(np.diag(size))[:, None], body.rigid.shape[1], 0
     own = condensed(body.mass, body.stiffness)
+    if not own.following + own.bare:
+        size = np.sqrt(np.outer(*[unit_scale(body.mass, body.names)] * 2))
+        squares, shapes = eigh(body.stiffness / size, body.mass / size)
+        return squares, shapes / np.sqrt(np.diag(size))[:, None], body.rigid.shape[1], 0
     squares, shapes = eigh((own.stiffness + own.stiffness.T) / 2, own.mass)
-    inertia = body.rigid.T @ body.mass @ body.rigid
-    unit = np.sqrt(np.abs(np.diag(inertia)))
-    unit[unit == 0] = 1.0
-    rigid = int(np.linalg.matrix_rank(inertia / np.outer(unit, unit), tol=_MASSLESS))
-    return squares, own.motions @ shapes, rigid, own.following
+    return squares, own.motions @ shapes, inert(body.mass, body.rigid), own.following
 
 
 def frame(body: Matrices, centre: NDArray) -> dict:
