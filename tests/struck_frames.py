@@ -129,6 +129,48 @@ def at_random(seed: int) -> Struck:
     return start._replace(forces=forces * random.uniform(0.05, 0.3) / _turned(start, forces))
 
 
+def of_three(seed: int, turn: float) -> Struck:
+    """A frame of three or four members in space, three interfaces, 12 modes, struck to turn so."""
+    random = np.random.default_rng(seed)
+    points, members = _grown(random, 3)
+    inner = [k for k in range(len(points)) if sum(k in member for member in members) > 1]
+    kept = sorted([k for k in range(len(points)) if k not in inner][:3] + inner)[:3]
+    depth = random.uniform(0.005, 0.01)
+    width = depth * random.uniform(1.0, 2.0)
+    section = Section(
+        area=width * depth, inertia_y=width * depth**3 / 12, inertia_z=depth * width**3 / 12,
+        torsion=0.2 * width * depth**3, youngs_modulus=7e10, poisson_ratio=0.3, density=2700.0)
+    start = Struck(points @ Rotation.random(random_state=seed).as_matrix().T, members, kept, 12,
+                   section, tuple(random.normal(size=3) * random.uniform(2.0, 8.0)))
+    forces = random.normal(size=(3, 3))
+    return start._replace(forces=forces * turn / _turned(start, forces))
+
+
+class Off(NamedTuple):
+    """A struck body beside nonlinear beams."""
+
+    error: float        # largest of its interfaces, by the size of the body
+    turn: float         # largest rotation of an interface against another one
+    warnings: tuple[str, ...]
+
+
+def beside_beams(struck: Struck, periods: float = 4.0, steps: int = 500) -> Off:
+    """Run a struck frame and beams, four a member, over some periods of its slowest vibration."""
+    body = struck.body()
+    slowest = 2 * np.pi / np.sqrt(eigh(body.stiffness, body.mass, eigvals_only=True)[6])
+    t_end = max(periods * slowest, 3 * OVER)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)
+        own, beams = (simulate(model, t_end / steps, t_end)
+                      for model in (struck.model(body), struck.beams(4)))
+    apart = max(np.linalg.norm(own[f"p{k}.position"] - beams[f"p{k}.position"], axis=1).max()
+                for k in struck.kept)
+    turned = [beams[f"p{k}.rotation"] for k in struck.kept]
+    turn = max(Rotation.from_matrix(np.swapaxes(a, 1, 2) @ b).magnitude().max()
+               for i, a in enumerate(turned) for b in turned[:i])
+    return Off(float(apart / np.ptp(struck.points, axis=0).max()), float(turn), own.warnings)
+
+
 def _grown(random: np.random.Generator, count: int) -> tuple[NDArray, list[tuple[int, int]]]:
     """Points and members: a star, a chain with branches, or a ring with arms."""
     kind = random.integers(3)

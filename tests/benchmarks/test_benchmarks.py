@@ -280,6 +280,14 @@ def test_struck_frames_beside_beams(monkeypatch, capsys):
     assert row["default"]["0.001"]["end"] == pytest.approx(0.1)
 
 
+def test_struck_bodies_that_turn(capsys):
+    bench = imported("bench_turned")
+    bench.main(["--json", "31"])
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["warned"] for row in rows] == [False, True]
+    assert all(0.03 < row["share"] < 3.0 for row in rows)
+
+
 def test_exported_libraries_beside_runs(monkeypatch, capsys):
     pytest.importorskip("ziglang", reason="exports are linked by the package ziglang")
     bench = imported("bench_export")

@@ -1,5 +1,6 @@
 """Free frames of slender members as one body, struck while they spin: energy at ordinary steps."""
 
+import re
 import warnings
 
 import numpy as np
@@ -10,8 +11,10 @@ from struck_frames import (
     TURN,
     Struck,
     at_random,
+    beside_beams,
     cross,
     energies,
+    of_three,
     ring,
     t_frame,
     u_frame,
@@ -230,3 +233,16 @@ def test_a_run_whose_energy_grows_says_so():
     """A frame on rotations, at a step between ruin and soundness."""
     said = told(lambda: simulate(cross().model(frame="converged_mean"), 1e-4, 0.6))
     assert any(one.startswith(("energy grows", "energy balance")) for one in said)
+
+
+@pytest.mark.parametrize(("seed", "turn"), [(21, 0.1), (31, 0.2), (25, 0.04)])
+def test_what_is_off_by_more_than_a_per_cent_is_warned_of(seed, turn):
+    """The warning predicts the error to a factor of four, as widely as these frames scatter."""
+    found = beside_beams(of_three(seed, turn))
+    said = [message for message in found.warnings if "turn by" in message]
+    assert bool(said) == (found.turn > 0.15)        # of the beams; the bodies turn alike
+    if said:
+        predicted = float(re.search("off by about ([0-9.]+) of its size", said[0])[1])
+        assert found.error / 4.0 < predicted < 4.0 * found.error
+    else:
+        assert found.error < 0.01

@@ -11,7 +11,7 @@ from sebody.model.frames import FRAMES, mass_off_line
 from sebody.model.parts import Superelement
 from sebody.runs.limits.axial import Axial
 from sebody.runs.limits.spin_stability import cautious_limit, divergence, first_frequency, reach
-from sebody.runs.limits.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR
+from sebody.runs.limits.thresholds import AXIAL, BENT, FAST, FLAT, LINEAR, MISSED, TURNED
 
 
 class Finding(NamedTuple):
@@ -27,7 +27,8 @@ class Limits(NamedTuple):
     """What the states of a body are compared with."""
 
     spin: float             # below which nothing is compared
-    off_line: bool          # its frame follows rotations, and its mass is off its nodes' line
+    crooked: bool           # its mass is off the line of its nodes
+    off_line: bool          # and its frame follows rotations
     axial: Axial | None     # None where no axial force matters
 
 
@@ -39,13 +40,13 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
         key = body.reduced, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
-                                _off_line(body), Axial.of(body))
+                                mass_off_line(body.reduced), _off_line(body), Axial.of(body))
         limits[body.name] = known[key]
     return limits
 
 
 def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, local: float,
-             said: Collection[str]) -> Iterator[Finding]:
+             between: float, said: Collection[str]) -> Iterator[Finding]:
     """Limits that a body exceeds in some states, of kinds that are not in `said`.
 
     Parameters
@@ -56,11 +57,18 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
         Of the frame, in its axes.
     local : float
         Largest rotation of a node relative to the frame [rad].
+    between : float
+        The same of a node relative to another one.
     """
     name = body.name
     if local > LINEAR:
         yield Finding("turn", name, local, f"local rotation {local:.2g} rad of body {name!r} "
                       f"exceeds the linear range, {LINEAR} rad: divide the body")
+    elif between > TURNED and limits.crooked:
+        yield Finding("ends", name, between, f"interfaces of body {name!r}, which is not straight, "
+                      f"turn by {between:.2g} rad against each other (limit {TURNED} rad): places "
+                      f"are off by about {MISSED * between**2:.1g} of its size, {MISSED} of the "
+                      "square, at any step and number of modes; divide the body")
     if local > BENT and limits.off_line:
         yield Finding("bent", name, local, f"local rotation {local:.2g} rad of body {name!r}, "
                       "whose frame follows the rotations of its nodes while its mass is off "
@@ -87,10 +95,22 @@ def flat(body: Superelement) -> Finding | None:
 
 
 def local_rotations(y: NDArray, counts: Counts) -> NDArray:
-    """Largest rotation of a node in its body frame, (states, bodies), from local coordinates."""
+    """Rotation vectors of the nodes in their body frames, (states, bodies, nodes, turns)."""
     first, turns = counts["D"] * counts["N_POSITIONS"], counts["turns"]
-    psi = y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
-    return np.linalg.norm(psi, axis=3).max(axis=2, initial=0.0)
+    return y[..., first:first + turns * counts["N_ROTATIONS"]].reshape(*y.shape[:2], -1, turns)
+
+
+def between_nodes(psi: NDArray) -> NDArray:
+    """Largest rotation of a node relative to another one, (states, bodies), to second order.
+
+    Of the node that has turned most against the first, relative to all others: of many nodes the
+    largest may be a seventh larger.
+    """
+    if not psi.shape[2]:
+        return np.zeros(psi.shape[:2])
+    furthest = np.linalg.norm(psi - psi[:, :, :1], axis=3).argmax(axis=2)
+    chosen = np.take_along_axis(psi, furthest[:, :, None, None], axis=2)
+    return np.linalg.norm(psi - chosen, axis=3).max(axis=2)
 
 
 def _off_line(body: Superelement) -> bool:

@@ -5,6 +5,8 @@ constraints and of the energy balance, which reports judge by, too, are in `sebo
 """
 
 LINEAR = 0.3        # rad, local rotation: linear stiffness misses its square, a tenth
+TURNED = 0.15       # rad, between interfaces of a body that is not straight: up to 3 % of its size
+MISSED = 0.25       # of the square of this, by the body's size: 0.06 to 1.5 of struck frames
 BENT = 0.1          # rad, the same where the frame follows rotations of a body off its nodes' line
 AXIAL = 1 / 3       # axial force, of what bending stiffness is worth: a tenth of Euler's
 FOLDED = 0.1        # rad, between a body's line and its frame when its tension is too large

@@ -24,6 +24,7 @@ from sebody.results.recording import Recording
 from sebody.runs.limits.body_limits import (
     Finding,
     Limits,
+    between_nodes,
     exceeded,
     flat,
     limits_of,
@@ -91,10 +92,12 @@ class Watch:
             motion, _ = evaluated(group, rows, record_counts(numbering))
             parts = MOTION.slices(group.counts)
             y, spins = motion[:, :, parts["y"]], motion[:, :, parts["spin"]]
-            local = local_rotations(y, group.counts).max(axis=0)
+            psi = local_rotations(y, group.counts)
+            local = np.linalg.norm(psi, axis=3).max(axis=(0, 2), initial=0.0)
+            between = between_nodes(psi).max(axis=0)
             for k, name in enumerate(group.bodies):
                 findings += exceeded(model.bodies[name], self._limits[name], y[:, k], spins[:, k],
-                                     local[k], self._said)
+                                     local[k], between[k], self._said)
         self.say_of_bodies(findings)
 
     def judge(self, run: Recording) -> tuple[str, ...]:
