@@ -138,7 +138,7 @@ def test_messages_and_pages_name_extras_that_exist():
 def test_the_check_of_a_commit_runs_what_the_readme_says():
     """Both commands of the README in their order; no variable makes things easier for them.
 
-    Those that choose another processor are set in one file, for passes of their own.
+    Those that choose another processor are set in one file, after the commands.
     """
     commands = re.findall(r"^pip install -e .*$", (ROOT / "README.md").read_text(), re.M)
     script = (ROOT / ".ci/run").read_text()
@@ -149,5 +149,6 @@ def test_the_check_of_a_commit_runs_what_the_readme_says():
                 for path in (ROOT / ".ci").iterdir()}
     assert assigned.pop("pass") == {"OPENBLAS_CORETYPE", "OPENBLAS_NUM_THREADS", "NUMBA_CPU_NAME",
                                     "NUMBA_CPU_FEATURES", "NPY_DISABLE_CPU_FEATURES"}
+    assert script.index(".ci/pass other") > script.rindex("README.md")
     # the last takes away
     assert set().union(*assigned.values()) == {"HOME", "PYTHONHASHSEED", "SEBODY_PLAIN"}
