@@ -53,6 +53,15 @@ def commands(text: str) -> list[list[str]]:
     return [words for block in blocks(text) if block.kind == "sh" for words in _words(block.code)]
 
 
+def commands_in_words(text: str) -> list[list[str]]:
+    """Whole commands in running text, in words: none that is named alone, or has placeholders."""
+    spans = re.findall(r"`(?:python -m )?sebody ([^`]+)`", BLOCK.sub("", text))
+    found = [shlex.split(span.replace("\n", " ")) for span in spans]
+    return [words for words in found if len(words) > 1 and not words[1].startswith("--")
+            and not any(re.fullmatch(r"\.\.\.|[A-Z]+(\.[a-z]+)?", word.rpartition("=")[2])
+                        for word in words)]
+
+
 def run(page: Path, folder: Path) -> Iterator[str]:
     """Run a page in a folder; programs that are not installed, by name."""
     text = page.read_text()

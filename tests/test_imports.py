@@ -53,8 +53,9 @@ MAY_IMPORT = {
             "explore", "analysis", "scenes", "catalogue", "verify", "export"},
     "derive": {"contract", "compiler", "kernels"},
 }
-# offers names of a folder above its own, which are loaded when they are asked for
-APART = {"sebody.results": "names of results"}
+# modules of a folder above their own: names that are loaded when they are asked for, and
+# the command line as a program
+APART = {"sebody.results": "names of results", "sebody.__main__": "cli"}
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"basics": {"numpy"}, "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},
@@ -71,7 +72,7 @@ OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_spa
           "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
           "small_motion/state_space": {"control"},
-          "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
+          "cli/entry": {"shtab"}, "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
 
 
 def module(path: Path) -> str:

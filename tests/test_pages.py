@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from copies import ROOT
-from pages import all_pages, blocks, run
+from pages import all_pages, blocks, commands_in_words, run
 
 # pages whose blocks other tests run, which need a copy of the tree or the README's numbers
 ELSEWHERE = {
@@ -23,6 +23,16 @@ def test_page(name, tmp_path, monkeypatch):
     for program in run(PAGES[name], tmp_path):
         if program == "ccx":
             pytest.skip("needs CalculiX: the commands after ccx read what it writes")
+
+
+def test_commands_in_running_text_can_be_given():
+    """Each is one that the command line takes, with all that it needs."""
+    from sebody.cli.entry import _parser
+
+    found = [words for page in all_pages() for words in commands_in_words(page.read_text())]
+    assert ["plot", "run.npz", "crank pin hinge.force.norm"] in found and len(found) > 10
+    for words in found:
+        assert _parser().parse_args(words).command, words
 
 
 def test_every_page_is_collected(tmp_path, monkeypatch):

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from sebody.cli.number_arguments import real
-from sebody.cli.scene_arguments import check_distinct
+from sebody.cli.scene_arguments import check_distinct, default_output
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -14,8 +14,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="file written by 'sebody run SCENE --output FILE.npz'")
     parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
                         help="plotted first in the page, written as for 'sebody plot'")
-    parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
-                        help="a self-contained page; with the ending gif or mp4 a film")
+    parser.add_argument("--output", type=Path, metavar="FILE.html",
+                        help="a self-contained page; with the ending gif or mp4 a film "
+                             "(default: RESULT.html)")
     parser.add_argument("--speed", type=real, metavar="S",
                         help="simulated time per second of playback")
     parser.add_argument("--colour", metavar="QUANTITY",
@@ -33,9 +34,10 @@ def run(options: argparse.Namespace) -> int:
     from sebody.pictures.animation import animate, check_animation
     from sebody.results.result import Result
 
-    check_animation(options.output)
-    check_distinct({"--output": options.output, "RESULT": Path(options.result)})
-    animate(Result.load(options.result), options.output, *options.quantities,
+    output = options.output or default_output(options.result, ".html")
+    check_animation(output)
+    check_distinct({"--output": output, "RESULT": Path(options.result)})
+    animate(Result.load(options.result), output, *options.quantities,
             speed=options.speed, colour=options.colour, reference=options.reference)
-    print(f"animation: {options.output}")
+    print(f"animation: {output}")
     return 0

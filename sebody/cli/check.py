@@ -8,7 +8,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser = commands.add_parser("check", help="check kernels: forces against energies, tangents "
                                                "against forces")
     parser.add_argument("kernels", nargs="*", metavar="KERNEL",
-                        help="show all criteria of these kernels (default: summary of all kernels)")
+                        help="show all criteria of these kernels, or of those of a joint such as "
+                             "revolute (default: summary of all kernels)")
     return parser
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import signal
 import sys
 import warnings
@@ -111,12 +112,43 @@ class _Version(argparse.Action):
         parser.exit()
 
 
+class _Completion(argparse.Action):
+    """Print what makes a shell complete commands and options."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace,
+                 values: Any, option_string: str | None = None) -> None:
+        try:
+            import shtab
+        except ImportError:
+            parser.error('completion needs shtab: pip install "sebody[completion]"')
+        print(shtab.complete(parser, shell=values))
+        parser.exit()
+
+
+class _Parser(argparse.ArgumentParser):
+    """The parser of all commands, which says what was perhaps meant by a word that is none."""
+
+    def error(self, message: str) -> Any:
+        chosen = re.match(r"argument COMMAND: invalid choice: '(.*?)'", message)
+        if chosen:
+            from sebody.basics.spelling import unknown
+
+            known = [name for action in self._actions if isinstance(action.choices, dict)
+                     for name in action.choices]
+            message = str(unknown("command", chosen[1], known))
+        super().error(message)
+
+
 def _parser() -> argparse.ArgumentParser:
     """Every module of a command has `add`, which makes its parser, and `run`."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="sebody", description="Flexible multibody dynamics with superelements.")
     parser.add_argument("--version", action=_Version, help="show the version and exit")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    parser.add_argument("--print-completion", action=_Completion, metavar="SHELL",
+                        choices=("bash", "zsh", "tcsh"),
+                        help="print what completes commands in bash, zsh or tcsh, and exit")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND",
+                                     parser_class=argparse.ArgumentParser)
     for command in COMMANDS:
         own = command.add(commands)
         own.set_defaults(command=command.run, parser=own)

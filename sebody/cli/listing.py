@@ -1,12 +1,18 @@
-"""``sebody list``: scenes and kernels there are, parameters of a scene, quantities of a result."""
+"""``sebody list``: scenes and kernels there are; what a scene, a result or a sweep's table has."""
 
 import argparse
 import inspect
 import re
 import textwrap
 from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
 
+from sebody.basics.errors import InputError
 from sebody.cli.scene_arguments import described, parameters, source
+
+if TYPE_CHECKING:
+    from sebody.explore.sweep.table import Table
 
 RESULTS = ".npz", ".h5"         # files of results
 
@@ -15,26 +21,46 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("list", help="list scenes and kernels, or parameters of a scene")
     parser.add_argument("scene", nargs="?", metavar="SCENE",
-                        help="name of a scene or FILE.py: list its parameters; FILE.npz: list its "
-                             "quantities")
+                        help="name of a scene or FILE.py: list its parameters; FILE.npz: list the "
+                             "quantities of a result, or what a sweep has varied and kept")
     return parser
 
 
 def run(options: argparse.Namespace) -> int:
     """Print the lists."""
-    if options.scene and options.scene.endswith(RESULTS):
-        _list_quantities(options.scene)
-    elif options.scene:
-        _list_parameters(options.scene)
+    given = options.scene
+    if given and given.endswith(RESULTS):
+        _list_file(given)
+    elif given and Path(given).suffix not in ("", ".py"):
+        there = "there is no such file" if not Path(given).exists() else "it is no file of these"
+        raise InputError(f"cannot list {given}: {there}; give the name of a scene, FILE.py, or a "
+                         f"result or table of a sweep with the ending {' or '.join(RESULTS)}")
+    elif given:
+        _list_parameters(given)
     else:
         _list_all()
     return 0
 
 
-def _list_quantities(path: str) -> None:
+def _list_file(path: str) -> None:
+    if path.endswith(RESULTS[0]):
+        from sebody.explore.sweep.table import Table
+
+        if Table.is_in(Path(path)):
+            return _list_table(Table.load(Path(path)))
     from sebody.results.result import Result
 
     print("\n".join(Result.load(path).names()))
+
+
+def _list_table(table: "Table") -> None:
+    """Print what a sweep has varied, and its outputs."""
+    for name, values in table.parameters.items():
+        distinct = dict.fromkeys(values.tolist())
+        print(f"{name}: {len(distinct)} values, " + (
+            f"{min(values):.6g} to {max(values):.6g}" if values.dtype.kind in "if" else
+            ", ".join(map(str, distinct))))
+    print(table.summary())
 
 
 def _list_parameters(scene: str) -> None:

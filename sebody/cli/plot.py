@@ -3,7 +3,12 @@
 import argparse
 from pathlib import Path
 
-from sebody.cli.scene_arguments import check_distinct, check_picture, labelled_results
+from sebody.cli.scene_arguments import (
+    check_distinct,
+    check_picture,
+    default_output,
+    labelled_results,
+)
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -18,21 +23,22 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "tip.position.x:y for y over x; further files RESULT.npz are "
                              "compared (default: an overview)")
     parser.add_argument("--spectrum", action="store_true", help="plot power spectral densities")
-    parser.add_argument("--output", type=Path, metavar="FILE.png", required=True,
-                        help="png, svg or pdf")
+    parser.add_argument("--output", type=Path, metavar="FILE.png",
+                        help="png, svg or pdf (default: RESULT.png)")
     return parser
 
 
 def run(options: argparse.Namespace) -> int:
     """Read the results and draw."""
-    check_picture(options.output)
+    output = options.output or default_output(options.result, ".png")
+    check_picture(output)
     from sebody.pictures.drawing import plot
     from sebody.results.saving import OUTPUT
 
     others = [word for word in options.words if word.endswith(OUTPUT[1])]
-    check_distinct({"--output": options.output, "RESULT": Path(options.result)})
+    check_distinct({"--output": output, "RESULT": Path(options.result)})
     plot(labelled_results([options.result, *others]),
          *(word for word in options.words if word not in others),
-         output=options.output, spectrum=options.spectrum)
-    print(f"picture: {options.output}")
+         output=output, spectrum=options.spectrum)
+    print(f"picture: {output}")
     return 0

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from sebody.cli.scene_arguments import check_distinct
+from sebody.cli.scene_arguments import check_distinct, default_output
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -14,8 +14,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="file written by 'sebody run SCENE --output FILE.npz'")
     parser.add_argument("quantities", nargs="*", metavar="QUANTITY",
                         help="quantities to plot, written as for 'sebody plot'")
-    parser.add_argument("--output", type=Path, metavar="FILE.html", required=True,
-                        help="a self-contained page")
+    parser.add_argument("--output", type=Path, metavar="FILE.html",
+                        help="a self-contained page (default: RESULT_report.html)")
     return parser
 
 
@@ -24,8 +24,9 @@ def run(options: argparse.Namespace) -> int:
     from sebody.pictures.report import check_report, report
     from sebody.results.result import Result
 
-    check_report(options.output)
-    check_distinct({"--output": options.output, "RESULT": Path(options.result)})
-    report(Result.load(options.result), options.output, *options.quantities)
-    print(f"report: {options.output}")
+    output = options.output or default_output(options.result, "_report.html")
+    check_report(output)
+    check_distinct({"--output": output, "RESULT": Path(options.result)})
+    report(Result.load(options.result), output, *options.quantities)
+    print(f"report: {output}")
     return 0

@@ -116,6 +116,12 @@ def labelled_results(paths: Sequence[str]) -> "dict[str, Result]":
     return {label: Result.load(path) for label, path in zip(labels, paths, strict=True)}
 
 
+def default_output(result: str, ending: str) -> Path:
+    """Where a command writes that is given no ``--output``: beside its result, of the same name."""
+    path = Path(result)
+    return path.parent / ((path.stem or "result") + ending)
+
+
 def check_distinct(targets: Mapping[str, Path | None]) -> None:
     """Refuse two options that name the same file, of which one would replace the other.
 

@@ -18,7 +18,8 @@ def build(n=1):
 """
 
 REFUSED = [
-    ((), "COMMAND"), (("fly",), "invalid choice: 'fly'"), (("--fast",), "COMMAND"),
+    ((), "COMMAND"), (("fly",), "command 'fly' is unknown: there are run, sweep"),
+    (("--fast",), "COMMAND"),
     (("run",), "required: SCENE"), (("run", ""), "scene '' is unknown"),
     (("run", "beam"), "scene 'beam' is unknown: there are"),
     (("run", "../hinged_beam"), "is unknown: did you mean 'hinged-beam'"),
@@ -98,7 +99,8 @@ REFUSED = [
     (("list", "box", "chain"), "unrecognized arguments: chain"),
     (("list", "--all"), "unrecognized arguments: --all"),
     (("list", "broken.npz"), "broken.npz is damaged or no results file"),
-    *(((command, "a.npz"), "required: --output") for command in ("plot", "animate", "report")),
+    *(((command, "a.npz"), "results file a.npz does not exist: give one that was saved")
+      for command in ("plot", "animate", "report")),
     *(((command, given, "--output", f"a{end}"), said)
       for command, end in (("plot", ".svg"), ("animate", ".html"), ("report", ".html"))
       for given, said in (("none.npz", "results file none.npz does not exist"),

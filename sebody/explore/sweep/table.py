@@ -161,6 +161,12 @@ class Table:
         with replacing(path, "table") as file:
             np.savez_compressed(file, **arrays, checksums=noted)
 
+    @staticmethod
+    def is_in(path: Path) -> bool:
+        """Whether an npz file holds the table of a sweep, not a result; see `load`."""
+        with opened(path, "results file", "give one that was saved") as reader:
+            return "design" in reader.headers
+
     @classmethod
     def load(cls, path: Path) -> "Table":
         """A table from its npz file.

@@ -6,13 +6,13 @@ rotations of the order of one radian, elastic rotations to 0.3, moving and accel
 
 from collections.abc import Iterable
 
-from sebody.basics.spelling import unknown
 from sebody.catalogue import kernel_files, product_files
 from sebody.contract.names import ELEMENT, MOTION, PRODUCTS, SUPERELEMENT
 from sebody.kernels.loader import load
 from sebody.runs.first_run import compile_missing
 from sebody.verify.check.body_contacts import check_body_contact
 from sebody.verify.check.body_loads import check_body_load
+from sebody.verify.check.chosen import chosen_kernels
 from sebody.verify.check.elements import check_element
 from sebody.verify.check.law_products import check_law_products
 from sebody.verify.check.laws import follows
@@ -26,7 +26,7 @@ __all__ = ["CheckRow", "check_kernels", "summary", "table", "verdict"]
 
 
 def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
-    """Check kernels by name, all of them by default.
+    """Check kernels by name, all of them by default; see `chosen.chosen_kernels`.
 
     Raises
     ------
@@ -34,10 +34,7 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
         An unknown name.
     """
     known, rows = [*kernel_files(), *product_files()], []
-    chosen = list(names or known)
-    for name in chosen:
-        if name not in known:
-            raise unknown("kernel", name, known)
+    chosen = chosen_kernels(names, known) if names else known
     of_products = [name.removeprefix(PRODUCTS) for name in chosen]
     compile_missing(dict.fromkeys((*chosen, *of_products)))
     for name in chosen:
