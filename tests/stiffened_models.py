@@ -11,10 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, simulate, trapezoidal
 from sebody.analysis import linearize
-from sebody.assembly.numbering import coordinates
 from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import assemble, to_body_axes
 from sebody.fem import StiffnessSection, frame, hexahedral_block, straight_beam
+from sebody.model.numbering import coordinates
 from sebody.reduction import RigidFace, craig_bampton
 
 # So stiff along its axis that the tables' beams, which do not stretch, are met to their digits.

@@ -28,10 +28,10 @@ MAY_IMPORT = {
     "io": {"fem", "reduction"},
     "model": {*COMPILED, "fem", "reduction", "io"},         # of generated the options alone
     "control": {"model"},           # its names
-    "assembly": {*COMPILED, "engine", "reduction", "model"},        # the options likewise
-    "quantities": {*COMPILED, "engine", "reduction", "model", "assembly"},
+    "quantities": {*COMPILED, "engine", "reduction", "model"},
+    "assembly": {*COMPILED, "engine", "reduction", "model", "quantities"},  # the options likewise
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "quantities"},
-    "pictures": {"fem", "reduction", "model", "results"},
+    "pictures": {"fem", "reduction", "model", "quantities", "results"},
     "names of results": {"results", "pictures"},
     "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results"},
     "small_motion": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results",

@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
 from sebody.assembly.control import begin
-from sebody.assembly.numbering import Numbering, record_counts, stretch
 from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.clock import CLOCK, CONTROL
@@ -19,6 +18,7 @@ from sebody.engine.state import EVALUATED, State
 from sebody.engine.system import System
 from sebody.kernels.rotations import rotate
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, record_counts, stretch
 
 
 def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, dense: bool,

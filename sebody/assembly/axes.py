@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.batches import Shape, starts
-from sebody.assembly.numbering import Numbering
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 
 
 def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:

@@ -27,7 +27,6 @@ from sebody.assembly.equal_bodies import (
     many_alike,
     turn_row,
 )
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.contract.counts import CACHE_LINE
 from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
@@ -35,6 +34,7 @@ from sebody.engine.offsets import at_cache_lines
 from sebody.kernels.loader import element_kernel, load
 from sebody.model.body_points import point_constants
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
 
@@ -206,8 +206,8 @@ def _law_batches(model: Mechanism, numbering: Numbering, constants: _Constants,
     for element in laws:
         kernel, unknowns = element_kernel(element.kind), element_unknowns(numbering, element)
         check_element(element, kernel, len(unknowns), numbering)
-        own = constants_row(element.name, kernel, law_counts(model, element),
-                            law_constants(model, numbering, element))
+        values = law_constants(model, numbering, element)
+        own = constants_row(element.name, kernel, law_counts(values), values)
         row = index_row(element.name, kernel, unknowns, constants=constants.add(own),
                         frame=_kept_at(numbering, element, 0), port=numbering.ports[element],
                         positions=positions_of(element), nodes=_matrices(numbering, element))

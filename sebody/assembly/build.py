@@ -13,8 +13,9 @@ from sebody.assembly.control import control_arrays
 from sebody.assembly.equal_bodies import room_of
 from sebody.assembly.grounded import check_grounded
 from sebody.assembly.independent_parts import FEWEST
+from sebody.assembly.law_inputs import dependences
 from sebody.assembly.links import Ends, link_ends
-from sebody.assembly.numbering import Numbering, number, stretch
+from sebody.assembly.numbering import number
 from sebody.assembly.ports import port_arrays, series_arrays
 from sebody.assembly.structure import Structure, indices
 from sebody.basics.errors import InputError
@@ -28,6 +29,7 @@ from sebody.kernels.loader import element_kernel, load
 from sebody.model.extent import extent
 from sebody.model.hinges import check_axes
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, stretch
 from sebody.model.parts import Element
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
@@ -62,6 +64,12 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs,
                         series.values())
     slots = own.system["slot_unknowns"].size
+    owners = [owner for batch in batches.all for owner in batch.owners]
+    first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
+    rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
+    numbering = numbering._replace(
+        forces_at=dict(zip(owners, first_force, strict=False)),
+        constants_at=dict(zip(owners, rows, strict=True)), bristles={})
     system = System(
         shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
                          LANES * slots, int(own.system["width"].max()) ** 2),
@@ -80,12 +88,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         body_mass=_diagonals(b.reduced.mass for b in model.bodies.values()),
         damped=np.array([int(any(b.reduced.damping is not None for b in model.bodies.values()))]),
         guarded=_guarded(model, numbering))
-    owners = [owner for batch in batches.all for owner in batch.owners]
-    first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()
-    rows = [row[AT_CONSTANTS] for batch in batches.all for row in batch.rows]
-    return system, numbering._replace(
-        forces_at=dict(zip(owners, first_force, strict=False)),
-        constants_at=dict(zip(owners, rows, strict=True)), bristles={})
+    return system, numbering
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
@@ -113,16 +116,17 @@ def work_size(model: Mechanism) -> int:
                           len(one.point.body.rotations))
              for one in model.loads if one.point is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
-    rows += [_law_scratch(model, one) for one in model.loads if one.law is not None]
+    laws = dependences(model, [one for one in model.loads if one.law is not None])
+    rows += [_law_scratch(model, law, depends.numbers) for law, depends in laws.items()]
     return max([*rows, 64, 4 * elements, room_of(model)])
 
 
-def _law_scratch(model: Mechanism, element: Element) -> int:
-    """Scratch memory of a continuous controller and its actuators."""
+def _law_scratch(model: Mechanism, element: Element, numbers: int) -> int:
+    """Scratch memory of a continuous controller with a tape of so many numbers."""
     controller = model.controllers[element.law.controller]
     width = sum(t.start.size for t in element.dof_blocks) + len(element.law.modes)
     return scratch(len(controller.inputs), controller.states.size, len(controller.outputs), width,
-                   width)
+                   width, numbers)
 
 
 def _diagonals(matrices: Iterable[NDArray]) -> NDArray:

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.assembly.numbering import Numbering
 from sebody.model.histories import LoadSeries, Pieces, of_columns, pieces_of
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element
 from sebody.model.time_functions import TimeFunction
 

@@ -9,7 +9,6 @@ from types import ModuleType
 
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import InputError
 from sebody.contract.counts import (
     MOST_SLAVED,
@@ -27,6 +26,7 @@ from sebody.generated.options import INERTIA_OPTIONS
 from sebody.kernels.loader import find
 from sebody.kernels.packed import move_to_cache_lines
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element, Superelement
 from sebody.reduction.invariants import InertiaInvariants
 

@@ -10,15 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.channels import channel
-from sebody.assembly.memory_map import MemoryMap
-from sebody.assembly.numbering import Numbering
-from sebody.contract.law_row import OUTSIDE
+from sebody.basics.errors import InputError
 from sebody.contract.layout import INPUT_NUMBERS
 from sebody.engine.control_data import (
     APPLY,
-    CHANNEL_NUMBERS,
-    CHANNEL_PLACES,
     CONTROLLER,
     COUNTS,
     ITS_QUEUE,
@@ -31,6 +26,19 @@ from sebody.engine.control_data import (
 from sebody.model.control_order import continuous, order, sampled, signals
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import MemoryMap, Numbering
+from sebody.quantities.expressions import Tape
+from sebody.quantities.symbols import NoTape, Recorded
+
+
+class Tapes(NamedTuple):
+    """Tapes of sensors, one after the other."""
+
+    places: list[tuple[int, ...]]       # of every sensor, from OUTPUT on: see `engine.control_data`
+    reads: NDArray
+    steps: NDArray
+    factors: NDArray
+    weights: NDArray
 
 
 class Task(NamedTuple):
@@ -48,8 +56,11 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     sensors, controllers = list(stored.sensors), sampled(model)
     tasks = _tasks(sensors, controllers, order(model))
     numbers = {sensor.name: k for k, sensor in enumerate(sensors)}
-    channels = [channel(model, numbering, one.quantity, one.axes) for one in sensors]
+    tapes = [_tape(model, numbering, one) for one in sensors]
     first = COUNTS + len(tasks) + 2 * len(sensors)
+    at_numbers = list(accumulate((0 if tape is None else tape.size for tape in tapes),
+                                 initial=first))
+    first = at_numbers[-1]
     queues, first = _queues([(s.delay, 1) for s in sensors], first)
     delayed, first = _queues([(c.whole_delay, len(c.outputs)) for c in controllers], first)
     scratch = list(accumulate((len(c.inputs) + len(c.outputs) for c in controllers),
@@ -57,17 +68,16 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
     wires, at_wires = _wires(stored, controllers, numbers)
     ends, at_ends = _ends(stored, controllers)
     held = {*signals(model), *(one.name for one in sensors if one.period)}
+    read = _together(tapes, at_numbers)
     at_parameters = list(accumulate((len(c.parameters) for c in controllers), initial=0))
     return Control(
         tasks=_table([(one.kind, one.number) for one in tasks], 2),
         periods=np.array([one.period for one in tasks], dtype=float),
         offsets=np.array([one.offset for one in tasks], dtype=float),
-        channels=_table([one.places for one in channels], 1 + CHANNEL_PLACES),
-        coefficients=np.array([s.gain * one.numbers for s, one in zip(
-            sensors, channels, strict=True)], dtype=float).reshape(-1, CHANNEL_NUMBERS),
-        sensors=_table([(stored.values[s.name], k, s.delay, queues[k])
-                        for k, s in enumerate(sensors)], 4),
-        errors=np.array([(s.bias, s.noise) for s in sensors], dtype=float).reshape(-1, 2),
+        sensors=_table([(stored.values[s.name], s.delay, queues[k], *places) for k, (s, places)
+                        in enumerate(zip(sensors, read.places, strict=True))], 10),
+        reads=read.reads, steps=read.steps, factors=read.factors, weights=read.weights,
+        scales=np.array([(s.gain, s.bias, s.noise) for s in sensors], dtype=float).reshape(-1, 3),
         seeds=np.array([s.seed for s in sensors], dtype=np.int64),
         controllers=_table([(
             c.function.address, at_wires[k], len(c.inputs), at_ends[k], len(c.outputs),
@@ -79,7 +89,7 @@ def control_arrays(model: Mechanism, numbering: Numbering, table_at: NDArray) ->
         limits=np.array([numbering.time_functions[port].limits or (1.0, -1.0)
                          for port in stored.inputs], dtype=float).reshape(-1, 2),
         parameters=np.concatenate([np.zeros(0), *(c.parameters for c in controllers)]),
-        outside=np.array([int(any(one.places[0] == OUTSIDE for one in channels))]),
+        outside=np.array([int(None in tapes)]),
         flowing=np.array([stored.values[name] for one in continuous(model) for name in one.outputs],
                          dtype=np.int64),
         read=np.array([int(any(name in held for one in continuous(model)
@@ -116,6 +126,33 @@ def _tasks(sensors: list[Sensor], controllers: list[Controller], ordered: list[C
             *(Task(APPLY, k, one.period, one.rest) for k, one in enumerate(controllers)
               if one.rest),
             *(Task(CONTROLLER, controllers.index(one), one.period) for one in ordered)]
+
+
+def _tape(model: Mechanism, numbering: Numbering, sensor: Sensor) -> Tape | None:
+    """The tape of what a sensor measures; None where Python has to read it, or to refuse it."""
+    of = Recorded(model, numbering)
+    try:
+        shape = of.put(sensor.quantity, sensor.axes)
+    except (NoTape, InputError):
+        return None
+    timed = any(place == of.parts["t"].start for (_, place), _ in of.tape.read_for())
+    return None if shape or timed else of.tape      # the time is written to recorded rows alone
+
+
+def _together(tapes: list[Tape | None], at_numbers: list[int]) -> Tapes:
+    """Tapes one after the other; `at_numbers` are the places of their numbers."""
+    places, reads, arrays = [], [], [Tape().arrays()]
+    ends = np.array([part.size for part in arrays[0]])
+    for tape, at in zip(tapes, at_numbers, strict=False):
+        if tape is None:
+            places.append((0,) * 7)
+            continue
+        before = len(reads)
+        reads += [(number, place) for (_, place), number in tape.read_for()]
+        places.append((tape.outputs[0], at, before, len(reads), *ends.tolist()))
+        arrays.append(tape.arrays())
+        ends = ends + [part.size for part in arrays[-1]]
+    return Tapes(places, _table(reads, 2), *map(np.concatenate, zip(*arrays, strict=True)))
 
 
 def _queues(delays: list[tuple[int, int]], first: int) -> tuple[list[int], int]:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.batches import Shape
-from sebody.assembly.numbering import Numbering
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 
 
 class Ends(NamedTuple):

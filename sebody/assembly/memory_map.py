@@ -6,7 +6,6 @@ set and when; what sensors measured last; signals of controllers; their states.
 
 from collections.abc import Mapping
 from itertools import accumulate
-from typing import NamedTuple
 
 from sebody.basics.errors import InputError
 from sebody.contract.layout import INPUT_NUMBERS
@@ -14,26 +13,16 @@ from sebody.kernels.loader import element_kernel
 from sebody.model.control_order import actuators, sampled, signals
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import MemoryMap
 from sebody.model.parts import Element, Superelement
 
 
-class MemoryMap(NamedTuple):
-    """Places in `State.frames`."""
-
-    memories: dict[Element, list[int]]  # element -> the numbers that it keeps
-    inputs: dict[int, int]      # port of an input -> its first number
-    ports: dict[str, int]       # name of an input -> port
-    sensors: list[Sensor]       # those of the model, then of quantities that controllers name
-    values: dict[str, int]      # name of a sensor, signal or input -> its value
-    states: dict[str, int]      # controller -> its first state
-    size: int                   # of `State.frames`
-
-
-def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int]) -> MemoryMap:
-    """Number what is stored; `ports` are those of loads."""
+def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int],
+               angles: Mapping[Element, int]) -> MemoryMap:
+    """Number what is stored; `ports` are those of loads, `angles` those that laws keep."""
     memories, first = {}, 9 * len(model.bodies)
     for one in model.loads:
-        if count := _count(model, one):
+        if count := angles.get(one, len(element_kernel(one.kind).MEMORY)):
             memories[one] = list(range(first, first + count))
             first += count
     inputs = {ports[one]: first + INPUT_NUMBERS * k
@@ -49,13 +38,6 @@ def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int]) ->
     places = list(accumulate((len(one.states) for one in controllers), initial=first))
     states = {one.name: place for one, place in zip(controllers, places, strict=False)}
     return MemoryMap(memories, inputs, own, sensors, values, states, places[-1])
-
-
-def _count(model: Mechanism, one: Element) -> int:
-    """How many numbers an element keeps; a continuous controller what it reads."""
-    if one.law is not None:
-        return len(model.controllers[one.law.controller].inputs)
-    return len(element_kernel(one.kind).MEMORY)
 
 
 def _sensors(model: Mechanism) -> list[Sensor]:

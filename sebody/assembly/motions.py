@@ -1,38 +1,20 @@
 """Bodies whose motion one kernel computes in one call: what their frames do, and they in these."""
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sebody.assembly.body_constants import frame_constants
 from sebody.assembly.contracts import constants_row, frame_counts, index_row
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.basics.errors import InputError
-from sebody.contract.counts import Counts, scratch_size
-from sebody.contract.layout import MOTION
+from sebody.contract.counts import scratch_size
 from sebody.contract.names import motion_name
 from sebody.kernels.loader import derive_command, load
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import Superelement
-
-
-class Motions(NamedTuple):
-    """Bodies with the same frame and numbers of positions, rotations and unknowns."""
-
-    address: int            # of the kernel
-    bodies: list[str]       # their names
-    counts: Counts          # that sizes in `layout.MOTION` refer to
-    index: NDArray          # (b, stride) index rows
-    constants: NDArray      # rows of constants
-    scratch: int            # numbers of scratch memory
-
-    @property
-    def size(self) -> int:
-        """Numbers of a body's motion in a state."""
-        return MOTION.size(self.counts)
+from sebody.quantities.reading import Motions
 
 
 def motion_kernel(body: Superelement) -> str:

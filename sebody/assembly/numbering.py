@@ -1,80 +1,19 @@
 """Numbers of coordinates, multipliers and power ports of a model."""
 
 from collections import defaultdict
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.elimination_order import elimination_order, parents
-from sebody.assembly.memory_map import MemoryMap, memory_map
+from sebody.assembly.law_inputs import dependences
+from sebody.assembly.memory_map import memory_map
 from sebody.assembly.ports import number_ports, series_of
 from sebody.basics.errors import InputError
-from sebody.model.histories import of_columns
+from sebody.model.continuous import complete_law
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Element, Superelement
-from sebody.model.time_functions import TimeFunction
-
-
-class Numbering(NamedTuple):
-    """Coordinates: unknowns first, then fixed and prescribed ones, then dependent positions."""
-
-    free: int                           # number of unknowns
-    total: int                          # number of coordinates
-    dof_blocks: dict[DofBlock, int]        # DOF block -> first coordinate
-    rotations: dict[DofBlock, int]       # DOF block -> number of its rotation matrix
-    modes: dict[str, int]               # superelement -> first modal amplitude
-    multipliers: dict[Element, int]     # constraint -> first multiplier
-    names: list[str]                    # of every coordinate
-    dependent: list[DofBlock]              # positions at the ends of rigid links
-    ports: dict[Element | Superelement, int]    # constraint, load, spring, body -> power port
-    port_names: list[str]               # of every power port
-    time_functions: list[TimeFunction]            # of every power port
-    prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
-    groups: NDArray                     # where the unknowns of each body begin
-    # body, constraint or load -> its first force in State.g
-    forces_at: dict[Element | Superelement, int] = {}
-    memory_map: MemoryMap | None = None      # what is stored from step to step
-    # body or element -> its row in System.constants
-    constants_at: dict[Element | Superelement, int] = {}
-    bristles: dict[Element, float] = {}     # element -> stiffness of its bristles in the run
-    reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
-    jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
-    forced: list[bool] = []             # of every power port: whether it is of a load
-    series: dict[Element, int] = {}     # load -> first amplitude of its series in State.loads
-
-    @property
-    def memories(self) -> dict[Element, list[int]]:
-        """What elements keep: places in `State.frames`."""
-        return self.memory.memories
-
-    @property
-    def courses(self) -> list[tuple[str, TimeFunction]]:
-        """Time functions of all power ports, and of the columns of series of loads, with names."""
-        found = list(zip(self.port_names, self.time_functions, strict=True))
-        for load in self.series:
-            assert load.series is not None
-            found += [(f"column {column} of {load.name}", one) for column, one in zip(
-                load.series.names, of_columns(load.series), strict=True)]
-        return found
-
-    @property
-    def memory(self) -> MemoryMap:
-        """What is stored from step to step, of a numbering that is complete."""
-        assert self.memory_map is not None
-        return self.memory_map
-
-
-def coordinates(numbering: Numbering, dof_block: DofBlock) -> list[int]:
-    """Coordinates of a DOF block."""
-    first = numbering.dof_blocks[dof_block]
-    return list(range(first, first + dof_block.start.size))
-
-
-def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
-    """Coordinates of a DOF block, as a slice."""
-    first = numbering.dof_blocks[dof_block]
-    return slice(first, first + dof_block.start.size)
+from sebody.model.numbering import Numbering, coordinates
+from sebody.model.parts import DofBlock, Element
 
 
 def hidden_states(model: Mechanism, numbering: Numbering) -> dict[int, str]:
@@ -117,6 +56,7 @@ def number(model: Mechanism) -> Numbering:
     InputError
         A DOF block that belongs to no body and is not fixed.
     """
+    laws = _complete_laws(model)
     parts, awaited = elimination_order(model)
     last = {p: k for k, part in enumerate(parts) for p in part.parents}
     coupled = _coupled(model, last)
@@ -146,7 +86,18 @@ def number(model: Mechanism) -> Numbering:
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps, forced=ports.forced,
                      series=series_of(model, len(ports.names)),
-                     memory_map=memory_map(model, ports.of), reads=_reads(model, order.multipliers))
+                     memory_map=memory_map(model, ports.of, laws),
+                     reads=_reads(model, order.multipliers))
+
+
+def _complete_laws(model: Mechanism) -> dict[Element, int]:
+    """Let laws of controllers act on what they read, too; how many angles each of them keeps."""
+    found = dependences(model, [load for load in model.loads if load.law is not None])
+    for law, depends in found.items():
+        assert law.law is not None
+        complete_law(model, law, model.controllers[law.law.controller], depends.places,
+                     depends.modes)
+    return {law: depends.angles for law, depends in found.items()}
 
 
 class _Order:
@@ -242,9 +193,3 @@ def _used(model: Mechanism) -> list[DofBlock]:
     blocks += [t for e in elements for t in e.dof_blocks]
     blocks += parents(blocks)
     return list(dict.fromkeys(blocks))
-
-
-def record_counts(numbering: Numbering) -> dict[str, int]:
-    """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
-    return {"ports": len(numbering.time_functions), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "stored": numbering.memory_map.size}

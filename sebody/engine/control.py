@@ -9,18 +9,22 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.actuator_inputs import FROM, SINCE, VALUE, input_at
-from sebody.engine.channels import read_channel
 from sebody.engine.control_data import (
     APPLY,
+    AT_FACTORS,
+    AT_STEPS,
+    AT_WEIGHTS,
     BIAS,
-    CHANNEL,
     COUNTS,
     DELAY,
+    END_READ,
     ENDS,
     FAULTY,
     FIRST_END,
+    FIRST_READ,
     FIRST_WIRE,
     FUNCTION,
+    GAIN,
     HAS,
     ITS_DELAY,
     ITS_QUEUE,
@@ -28,6 +32,8 @@ from sebody.engine.control_data import (
     NEVER,
     NEXT,
     NOISE,
+    NUMBERS,
+    OUTPUT,
     PARAMETERS,
     QUEUE,
     SCRATCH,
@@ -47,6 +53,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.step_control import NEAR
 from sebody.kernels.abi import at, call_law, pointer_to
+from sebody.kernels.tapes import play
 
 
 @compiled
@@ -118,23 +125,29 @@ def _hold(system, state, k):
 def _reading(system, state, k):
     """What a sensor reads now, with bias and noise."""
     control, first = system.control, COUNTS + system.control.periods.size
-    value, counts = channel_value(system, state, k), first + control.sensors.shape[0] + k
+    value, counts = measured(system, state, k), first + control.sensors.shape[0] + k
     count = state.memory[counts]
     state.memory[counts] = count + 1.0
-    value += control.errors[k, BIAS]
-    if control.errors[k, NOISE] > 0.0:
-        value += control.errors[k, NOISE] * normal(control.seeds[k], np.int64(count))
+    value += control.scales[k, BIAS]
+    if control.scales[k, NOISE] > 0.0:
+        value += control.scales[k, NOISE] * normal(control.seeds[k], np.int64(count))
     return value
 
 
 @compiled
-def channel_value(system, state, k):
-    """The quantity that a sensor reads, as it is."""
-    control = system.control
-    place, channel = COUNTS + control.periods.size + k, control.sensors[k, CHANNEL]
-    state.memory[place] = read_channel(state.now, control.channels[channel],
-                                       control.coefficients[channel], state.memory[place])
-    return state.memory[place]
+def measured(system, state, k):
+    """The quantity that a sensor measures, with its gain."""
+    control, row = system.control, system.control.sensors[k]
+    if row[OUTPUT] == 0:
+        return state.memory[COUNTS + control.periods.size + k]
+    numbers = at(pointer_to(state.memory), row[NUMBERS])
+    numbers[0] = 1.0
+    for i in range(row[FIRST_READ], row[END_READ]):
+        numbers[control.reads[i, 0]] = state.now[control.reads[i, 1]]
+    play(at(pointer_to(control.steps), row[AT_STEPS]),
+         at(pointer_to(control.factors), row[AT_FACTORS]),
+         at(pointer_to(control.weights), row[AT_WEIGHTS]), numbers)
+    return control.scales[k, GAIN] * numbers[row[OUTPUT]]
 
 
 @compiled

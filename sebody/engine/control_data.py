@@ -6,19 +6,21 @@ from numpy.typing import NDArray
 
 from sebody.engine.arrays import Arrays
 
-# numbers of a row of `Control.channels` and `Control.coefficients`
-CHANNEL_PLACES, CHANNEL_NUMBERS = 6, 10
-# numbers of a row of `Control.sensors`: where its value is in State.frames, its channel, its delay
-# in samples, its queue in State.memory
-SLOT, CHANNEL, DELAY, QUEUE = range(4)
-BIAS, NOISE = range(2)                  # of a row of `Control.errors`
+# numbers of a row of `Control.sensors`: where its value is in State.frames; its delay in samples;
+# its queue in State.memory; of its tape the place of the quantity, 0 where Python has to read it,
+# the place of the first number in State.memory, first and end of what it reads, and where its
+# steps, their factors and weights begin
+(SLOT, DELAY, QUEUE, OUTPUT, NUMBERS, FIRST_READ, END_READ, AT_STEPS, AT_FACTORS,
+ AT_WEIGHTS) = range(10)
+GAIN, BIAS, NOISE = range(3)            # of a row of `Control.scales`
 SENSOR, APPLY, CONTROLLER = range(3)    # kinds of tasks; APPLY sets outputs of a controller
 # numbers of a row of `Control.controllers`
 (FUNCTION, FIRST_WIRE, WIRES, FIRST_END, ENDS, STATES, PARAMETERS, ITS_DELAY, ITS_QUEUE,
  SCRATCH, LATER) = range(11)
 # State.memory: the next sample; the next stop that Python asked for; whether it waits for readings
 # of Python and whether it has them; the controller with a fault; then of every task its samples so
-# far, of every sensor its reading by Python and its readings so far, then queues and scratch memory
+# far, of every sensor its reading by Python and its readings so far, then numbers of tapes, queues
+# and scratch memory
 NEXT, STOP, WAITS, HAS, FAULTY = range(5)
 COUNTS = FAULTY + 1
 NEVER = -1.0            # time of a stop that there is none: of ordinary size, for ensembles
@@ -32,10 +34,12 @@ class Control(Arrays):
     tasks           (n, 2) what is sampled in its order: kind, number
     periods         (n,) of these
     offsets         (n,) when they are due first
-    channels        (s, 1 + CHANNEL_PLACES) kind, and places in `State.now` that it reads
-    coefficients    (s, CHANNEL_NUMBERS) what they are multiplied with
-    sensors         (s, 4) see SLOT
-    errors          (s, 2) bias, and standard deviation of the noise
+    sensors         (s, 10) see SLOT
+    reads           (r, 2) of their tapes: places on the tape and in `State.now`
+    steps           of these tapes, see `sebody.kernels.tapes`, as are the next two
+    factors         places of the factors of products
+    weights         of products
+    scales          (s, 3) gain, bias, and standard deviation of the noise
     seeds           (s,) of the noise
     controllers     (c, 11) see FUNCTION
     wires           (w, 2) what controllers are given: place in `State.frames`, and the sensor that
@@ -54,10 +58,12 @@ class Control(Arrays):
     tasks: NDArray
     periods: NDArray
     offsets: NDArray
-    channels: NDArray
-    coefficients: NDArray
     sensors: NDArray
-    errors: NDArray
+    reads: NDArray
+    steps: NDArray
+    factors: NDArray
+    weights: NDArray
+    scales: NDArray
     seeds: NDArray
     controllers: NDArray
     wires: NDArray

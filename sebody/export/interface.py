@@ -7,7 +7,6 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from sebody.assembly.controller_rows import law_counts
-from sebody.assembly.numbering import Numbering
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
@@ -21,6 +20,7 @@ from sebody.model.control_order import continuous, sampled
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element, Motion
 from sebody.model.time_functions import TimeFunction
 from sebody.model.variants.copying import copied

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import InputError
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.quantities.expressions import Tape
 from sebody.quantities.inside import FENodes
 from sebody.quantities.reading import Reading, reading

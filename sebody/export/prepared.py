@@ -16,7 +16,7 @@ from sebody.basics.errors import InputError
 from sebody.basics.units import parsed_units
 from sebody.compiler.choice import way
 from sebody.compiler.user_functions import ControlFunction
-from sebody.contract.law_row import OUTSIDE
+from sebody.engine.control_data import OUTPUT
 from sebody.engine.row_exchanges import Exchanges
 from sebody.engine.state import EVALUATED, Scheme
 from sebody.engine.system import System
@@ -94,9 +94,8 @@ class Prepared:
         if len(set(self.names)) < len(self.names):
             twice = next(one for one in self.names if self.names.count(one) > 1)
             raise InputError(f"output {twice!r} is given twice: leave one out")
-        kinds = self.system.control.channels[:, 0]
         self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.memory.sensors)
-                        if kinds[k] == OUTSIDE]
+                        if self.system.control.sensors[k, OUTPUT] == 0]
         self.outputs: Reading = quantities.made(self.names, [s for _, s in self.sensors])
         units = parsed_units(made.units)
         self.units = [unit(one, units) for one in self.names]

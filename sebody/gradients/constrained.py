@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import coordinates
 from sebody.gradients.coefficients import Coefficients
 from sebody.gradients.course import Course, Event
 from sebody.gradients.factors import Factors
 from sebody.gradients.second_rates import second_rates
 from sebody.gradients.simplifications import Motion
+from sebody.model.numbering import coordinates
 from sebody.runs.simulation import Simulation
 
 CUTOFF = 1e-9       # relative: forces of constraints that other constraints exclude

@@ -33,7 +33,8 @@ from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
 from sebody.gradients.link_products import place_weights, pull_back_bars
 from sebody.gradients.products import Products, prepare, turn
-from sebody.quantities.reading import evaluate_loaded, play_back
+from sebody.kernels.tapes import play_back
+from sebody.quantities.reading import evaluate_loaded
 from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording

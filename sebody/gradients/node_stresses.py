@@ -18,8 +18,9 @@ from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.sensors import Evaluated, Rows, Sensor
 from sebody.quantities.inside import FENodes
+from sebody.quantities.names import NORM, STRESS, split
 from sebody.results.field_quantities import fe_node
-from sebody.results.naming import NORM, STRESS, look_up, split
+from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs.simulation import Simulation
 

@@ -9,7 +9,7 @@ from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.handles import handle
 from sebody.gradients.designs import Design
 from sebody.model.model import Model
-from sebody.results.naming import AXES
+from sebody.quantities.names import AXES
 
 
 class Column(NamedTuple):

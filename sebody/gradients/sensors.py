@@ -11,7 +11,8 @@ from sebody.gradients.followed import Followed, Rows, refuse_kept
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.kernels.rotations import inverse_tangent_coefficients
-from sebody.results.naming import AXES, NORM, look_up, rotation_vectors
+from sebody.quantities.names import AXES, NORM
+from sebody.results.naming import look_up, rotation_vectors
 from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space
 
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.basics.vectors import skew
 from sebody.engine.state import State
+from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import Superelement
 from sebody.results import rotations
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.evaluation import evaluate, matrix
-from sebody.assembly.numbering import coordinates
 from sebody.contract.layout import RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.gradients.factors import Factors, Scales
+from sebody.model.numbering import coordinates
 from sebody.runs.simulation import Simulation
 
 WHAT = "the start"

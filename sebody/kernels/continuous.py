@@ -17,22 +17,34 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled, kernel_function
 from sebody.contract.law_row import (
+    ANGLES,
+    AT,
+    AT_FACTORS,
+    AT_OUTPUTS,
+    AT_STEPS,
+    BIAS,
     DERIVATIVES,
     FIRST_STATE,
     INPUTS,
     ITS_ROW,
     KERNEL,
+    KIND,
     LAW_FUNCTION,
     LAW_HEADER,
+    LOCAL,
+    NUMBER,
+    NUMBERS,
     OUTPUT_PLACES,
     OUTPUTS,
     PLACE,
     PORT,
-    READING_NUMBERS,
-    READING_PLACES,
+    PRODUCTS,
+    READ_PLACES,
+    SCALE,
     STATES,
     STRIDE,
 )
+from sebody.contract.law_row import READS as READ
 from sebody.contract.law_row import WIDTH as ITS_WIDTH
 from sebody.contract.layout import (
     AT_CONSTANTS,
@@ -48,15 +60,17 @@ from sebody.contract.layout import (
     TANGENT,
     Part,
 )
+from sebody.contract.read_numbers import OF_Q, OF_R, OF_V
 from sebody.kernels.abi import Arguments, at, call_kernel, call_law
-from sebody.kernels.readings import reading, vary
+from sebody.kernels.tapes import play, play_back
 
 PLANAR = False
 N_POSITIONS = None      # any number
 N_ROTATIONS = None
 CONSTANTS = (
     Part("mass", (), "of the states, for norms"),
-    Part("readings", ("inputs", READING_NUMBERS), "numbers of the channels, and biases"),
+    Part("scales", ("inputs", 2), "what quantities are multiplied with, and what is added"),
+    Part("weights", ("products",), "of products on the tape of the inputs"),
     Part("limits", ("outputs", 2), "least and largest value; none where the largest is smaller"),
     Part("parameters", ("parameters",), "of the law"),
 )
@@ -101,16 +115,64 @@ def _differences(address, t, y, x, copy, inputs, states, results, other, count, 
             D[i*columns + column] = (results[i] - other[i])/(2.0*h)
 
 
-@compiled(forceinline=True)
-def _measure(law, numbers, kept, q, R, v, references, frames, y):
-    """Read the inputs in the iterate, and keep them, as angles count their turns."""
-    readings = at(law, LAW_HEADER)
+@compiled
+def _measure(law, scales, weights, kept, q, R, v, references, frames, numbers, y):
+    """Read the inputs in the iterate, and keep angles, which count their turns."""
+    reads = at(law, LAW_HEADER)
+    numbers[0] = 1.0
+    for k in range(law[READ]):
+        one = at(reads, READ_PLACES*k)
+        kind, place = one[KIND], one[AT]
+        numbers[one[NUMBER]] = (q[place] if kind == OF_Q else v[place] if kind == OF_V
+                                else R[place] if kind == OF_R else frames[place])
+    outputs = at(reads, READ_PLACES*law[READ])
+    angles = at(outputs, law[INPUTS])
+    for k in range(law[ANGLES]):
+        numbers[angles[k]] = references[kept + k]
+    play(at(law, law[AT_STEPS]), at(law, law[AT_FACTORS]), weights, numbers)
+    for k in range(law[ANGLES]):
+        frames[kept + k] = numbers[angles[k]]
     for k in range(law[INPUTS]):
-        own = at(numbers, READING_NUMBERS*k)
-        bias = own[READING_NUMBERS - 1]
-        y[k] = bias + reading(at(readings, READING_PLACES*k), own, q, R, v, frames,
-                               references[kept + k] - bias)
-        frames[kept + k] = y[k]
+        y[k] = scales[2*k + BIAS] + scales[2*k + SCALE]*numbers[outputs[k]]
+
+
+@compiled
+def _vary_inputs(law, n, scales, weights, numbers, bars, R, T, c_q, c_v, Y):
+    """Derivatives of the inputs by all unknowns, (inputs, n)."""
+    reads = at(law, LAW_HEADER)
+    outputs = at(reads, READ_PLACES*law[READ])
+    for k in range(law[INPUTS]):
+        for i in range(law[NUMBERS]):
+            bars[i] = 0.0
+        bars[outputs[k]] = scales[2*k + SCALE]
+        play_back(at(law, law[AT_STEPS]), at(law, law[AT_FACTORS]), weights, numbers, bars)
+        row = at(Y, k*n)
+        for i in range(law[READ]):
+            one = at(reads, READ_PLACES*i)
+            bar = bars[one[NUMBER]]
+            if bar == 0.0 or one[LOCAL] < 0:
+                continue
+            if one[KIND] == OF_Q:
+                row[one[LOCAL]] += c_q*bar
+            elif one[KIND] == OF_V:
+                row[one[LOCAL]] += c_v*bar
+            elif one[KIND] == OF_R:
+                _turn(at(row, one[LOCAL]), R, T, one[AT], c_q*bar)
+
+
+@compiled
+def _turn(row, R, T, place, bar):
+    """Add the derivatives of an entry of a rotation matrix by an increment of its rotation.
+
+    With ``dR = R skew(T d)`` they are those of entry (i, j), ``R_io (T d)_p - R_ip (T d)_o``,
+    where (j, o, p) are in cyclic order.
+    """
+    first = place//9*9
+    i, j = (place - first)//3, (place - first) % 3
+    o, p = (j + 1) % 3, (j + 2) % 3
+    one, other = bar*R[first + 3*i + o], bar*R[first + 3*i + p]
+    for k in range(3):
+        row[k] += one*T[first + 3*p + k] - other*T[first + 3*o + k]
 
 
 @compiled(forceinline=True)
@@ -162,15 +224,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         inputs, states, outputs, first = (law[INPUTS], law[STATES], law[OUTPUTS],
                                           law[FIRST_STATE])
         total, columns, t = states + outputs, inputs + states, loads[3*row[AT_PORT]]
-        readings = at(law, LAW_HEADER)
-        ends = at(readings, READING_PLACES*inputs)
-        mass, numbers = c[0], at(c, 1)
-        limits = at(numbers, READING_NUMBERS*inputs)
+        ends = at(law, law[AT_OUTPUTS])
+        mass, scales = c[0], at(c, 1)
+        weights = at(scales, 2*inputs)
+        limits = at(weights, law[PRODUCTS])
         parameters = at(limits, 2*outputs)
-        y, x = work, at(work, inputs)
+        numbers = work
+        bars = at(numbers, law[NUMBERS])
+        y = at(bars, law[NUMBERS])
+        x = at(y, inputs)
         copy = at(x, states)
         results = at(copy, states)
-        _measure(law, numbers, row[AT_FRAME], q, R, v, references, frames, y)
+        _measure(law, scales, weights, row[AT_FRAME], q, R, v, references, frames, numbers, y)
         for i in range(states):
             x[i] = v[unknowns[first + i]]
         _evaluate(law[LAW_FUNCTION], t, y, x, copy, states, results, total, parameters)
@@ -199,9 +264,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             continue
         for i in range(inputs*n):
             Y[i] = 0.0
-        for k in range(inputs):
-            vary(at(readings, READING_PLACES*k), at(numbers, READING_NUMBERS*k), q, R, v, T, c_q,
-                 c_v, at(Y, k*n))
+        _vary_inputs(law, n, scales, weights, numbers, bars, R, T, c_q, c_v, Y)
         _mark_varying(outputs, limits, at(results, states), unit)      # before results are lost
         if law[DERIVATIVES] != 0:
             _evaluate(law[DERIVATIVES], t, y, x, copy, states, D, total*columns, parameters)

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.units import Units
-from sebody.results.naming import AXES, NORM, Values, is_known, values
+from sebody.quantities.names import AXES, NORM
+from sebody.results.naming import Values, is_known, values
 from sebody.results.result import Result
 from sebody.results.units import with_unit
 

@@ -20,7 +20,7 @@ from sebody.pictures.plots import (
     check_matplotlib,
     write_picture,
 )
-from sebody.results.quantities import names
+from sebody.quantities.names import names
 from sebody.results.result import Result
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ import numpy as np
 from sebody.pictures.blocks import Blocks
 from sebody.pictures.curves import panels
 from sebody.pictures.scene import Scenery, thinned
-from sebody.results.naming import GROUPS, Values, values
-from sebody.results.quantities import names
+from sebody.quantities.names import GROUPS, names
+from sebody.results.naming import Values, values
 from sebody.results.result import Result
 from sebody.results.units import unit_of_curves
 

@@ -7,14 +7,24 @@ a tape where it is given symbols: compiled code evaluates and differentiates the
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import accumulate, chain
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
-# steps of a tape: a sum of products, and functions of such a sum; ANGLE is that of a vector with
-# the components across and along, CHOICE the value whose comparison is the largest
-SUM, ROOT, INVERSE, COSINE, SINE, POSITIVE, ANGLE, CHOICE = range(8)
-FACTORS = 3             # of a product at most; of fewer the rest is the number one
+from sebody.contract.read_numbers import (
+    ANGLE,
+    CHOICE,
+    COSINE,
+    FACTORS,
+    INVERSE,
+    POSITIVE,
+    ROOT,
+    SINE,
+    SUM,
+)
+
 Product: TypeAlias = tuple[int, ...]
 
 
@@ -24,6 +34,14 @@ class Step(NamedTuple):
     function: int
     place: int          # of the number
     products: tuple[tuple[Product, float], ...]
+
+
+class Arrays(NamedTuple):
+    """Steps of a tape as `sebody.kernels.tapes` reads them."""
+
+    steps: NDArray      # (1 + 4 s,)
+    factors: NDArray    # (FACTORS m,)
+    weights: NDArray    # (m,)
 
 
 class Tape:
@@ -65,6 +83,39 @@ class Tape:
         if not isinstance(value, Sum):
             value = self.enter(SUM, [((), float(value))])
         self.outputs.append(value.place())
+
+    def arrays(self) -> Arrays:
+        """The steps for compiled code."""
+        used = self._used()
+        taken = [step for step in self.steps if step.place in used]
+        products = [product for step in taken for product in step.products]
+        ends = list(accumulate((len(step.products) for step in taken), initial=0))
+        steps = [(step.function, step.place, ends[k], ends[k + 1]) for k, step in enumerate(taken)]
+        return Arrays(
+            np.array([len(steps), *chain.from_iterable(steps)], dtype=np.int64),
+            np.array([place for own, _ in products
+                      for place in (*own, *(0,) * (FACTORS - len(own)))], dtype=np.int64),
+            np.array([weight for _, weight in products], dtype=float))
+
+    @property
+    def angles(self) -> list[int]:
+        """Places of angles, which continue from what they were."""
+        used = self._used()
+        return [step.place for step in self.steps
+                if step.function == ANGLE and step.place in used]
+
+    def read_for(self, first: int = 0) -> list[tuple[tuple[int, int], int]]:
+        """Keys and places of numbers that the outputs from one on follow from."""
+        used = self._used(first)
+        return [(key, place) for key, place in self.inputs.items() if place in used]
+
+    def _used(self, first: int = 0) -> set[int]:
+        """Places of numbers that the outputs from one on follow from, these included."""
+        used = set(self.outputs[first:])
+        for step in reversed(self.steps):
+            if step.place in used:
+                used |= {place for product, _ in step.products for place in product}
+        return used
 
     def _new(self) -> int:
         self.size += 1

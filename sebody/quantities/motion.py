@@ -1,7 +1,7 @@
 """Formulas of motions: of nodes, modes and joints, and of what a run keeps."""
 
-from sebody.assembly.numbering import stretch
 from sebody.basics.errors import InputError
+from sebody.model.numbering import stretch
 from sebody.model.parts import SLIDES, TURNS, DofBlock, Joint
 from sebody.quantities.algebra import back, dot, minus, spun, times
 from sebody.quantities.expressions import Number, angle

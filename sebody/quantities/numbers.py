@@ -10,9 +10,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from sebody.assembly.numbering import Numbering
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import DofBlock, Node
 from sebody.quantities.expressions import Matrix, Number, cosine, sine
 
@@ -36,6 +36,7 @@ class Numbers:
     def __init__(self, model: Mechanism, numbering: Numbering):
         self.model, self.numbering = model, numbering
         self.made: dict[str, Any] = {}      # of these numbers, once
+        self._ground = {node.rotation for node in model.grounds}
 
     def recorded(self, part: str, k: int) -> Number:
         """Number k of a part of `layout.RECORD`."""
@@ -86,7 +87,7 @@ class Numbers:
 
     def rotation(self, block: DofBlock | None) -> Matrix:
         """Rotation matrix of a block; of none that of no rotation."""
-        if block is None or block not in self.numbering.dof_blocks:
+        if block is None or block in self._ground or block not in self.numbering.dof_blocks:
             return np.eye(self.model.dimension).tolist()
         if self.model.planar:
             angle = self.recorded("q", self.numbering.dof_blocks[block])

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.motions import Motions
 from sebody.compiler.decorators import compiled
+from sebody.contract.counts import Counts
 from sebody.contract.layout import ENERGY as ENERGIES
+from sebody.contract.layout import MOTION as MOTION_ROW
 from sebody.contract.layout import OK, RESIDUAL, VELOCITY
 from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, MOTION, NOW, RESIDUE, TOTAL
 from sebody.engine.arrays import Arrays
@@ -22,20 +24,26 @@ from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
-from sebody.quantities.expressions import (
-    ANGLE,
-    CHOICE,
-    COSINE,
-    FACTORS,
-    INVERSE,
-    POSITIVE,
-    ROOT,
-    SINE,
-    SUM,
-    Tape,
-)
+from sebody.kernels.tapes import play
+from sebody.quantities.expressions import Tape
 
 BODY = 6                # numbers of a body in Reading.bodies
+
+
+class Motions(NamedTuple):
+    """Bodies with the same frame and numbers of positions, rotations and unknowns."""
+
+    address: int            # of the kernel
+    bodies: list[str]       # their names
+    counts: Counts          # that sizes in `layout.MOTION` refer to
+    index: NDArray          # (b, stride) index rows
+    constants: NDArray      # rows of constants
+    scratch: int            # numbers of scratch memory
+
+    @property
+    def size(self) -> int:
+        """Numbers of a body's motion in a state."""
+        return MOTION_ROW.size(self.counts)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +52,9 @@ class Reading(Arrays):
 
     ============  ==================================================================================
     inputs        (i, 3) place on the tape, kind of number, its place in a state
-    steps         (s, 4) function, place on the tape, first of its products and end of these
-    factors       (m, FACTORS) places on the tape of the factors of every product
-    weights       (m,) of these products
+    steps         of `Tape.arrays`, as are the next two
+    factors       places on the tape of the factors of every product
+    weights       of these products
     outputs       (n,) places on the tape
     batches       (b, 3) batches whose forces are read: number, first element, elements
     bodies        (b, BODY) of motions: kernel, stride and width, where index and constants begin,
@@ -98,10 +106,6 @@ def reading(tape: Tape, system: System | None = None, state: State | None = None
         Bodies whose motion is read, and where the numbers of each begin.
     """
     inputs = [(place, *key) for key, place in tape.inputs.items()]
-    products = [product for step in tape.steps for product in step.products]
-    ends = np.cumsum([0, *(len(step.products) for step in tape.steps)])
-    steps = [(step.function, step.place, ends[k], ends[k + 1])
-             for k, step in enumerate(tape.steps)]
     needs = np.zeros(1 + MOTION, dtype=np.int64)
     needs[[kind for kind, _ in tape.inputs]] = 1
     row, loads, sums, frames = (np.zeros(own.size) for own in (
@@ -114,10 +118,8 @@ def reading(tape: Tape, system: System | None = None, state: State | None = None
     numbers = np.zeros(tape.size)
     numbers[0] = 1.0
     return Reading(
-        _whole(inputs, 3), _whole(steps, 4),
-        _whole([(*own, *(0,) * (FACTORS - len(own))) for own, _ in products], FACTORS),
-        np.array([weight for _, weight in products], dtype=float),
-        np.array(tape.outputs, dtype=np.int64), _batches(tape, system), _whole(rows, BODY),
+        _whole(inputs, 3), *tape.arrays(), np.array(tape.outputs, dtype=np.int64),
+        _batches(tape, system), _whole(rows, BODY),
         np.concatenate([group.index.ravel() for group in groups] or [_whole([], 1).ravel()]),
         np.concatenate([group.constants for group in groups] or [np.zeros(0)]),
         needs, np.zeros(len(tape.outputs)), numbers,
@@ -244,116 +246,3 @@ def _number(state, reading, kind, place):
     if kind == LOAD:
         return state.loads[place]
     return reading.moved[place]
-
-
-@compiled
-def play(steps, factors, weights, numbers):
-    """Compute the numbers of a tape from those that are read."""
-    for s in range(steps.shape[0]):
-        function, place, first, end = steps[s, 0], steps[s, 1], steps[s, 2], steps[s, 3]
-        if function == ANGLE:
-            found = np.arctan2(numbers[factors[first, 0]], numbers[factors[first + 1, 0]])
-            turns = np.floor((numbers[place] - found) / (2.0 * np.pi) + 0.5)
-            numbers[place] = found + 2.0 * np.pi * turns
-            continue
-        if function == CHOICE:
-            numbers[place] = numbers[factors[chosen(factors, first, end, numbers), 1]]
-            continue
-        x = 0.0
-        for i in range(first, end):
-            product = weights[i]
-            for j in range(FACTORS):
-                product *= numbers[factors[i, j]]
-            x += product
-        if function == SUM:
-            numbers[place] = x
-        elif function == ROOT:
-            numbers[place] = np.sqrt(max(x, 0.0))
-        elif function == INVERSE:
-            numbers[place] = 1.0 / x
-        elif function == COSINE:
-            numbers[place] = np.cos(x)
-        elif function == SINE:
-            numbers[place] = np.sin(x)
-        elif function == POSITIVE:
-            numbers[place] = 1.0 if x > 0.0 else 0.0
-
-
-@compiled
-def chosen(factors, first, end, numbers):
-    """The product of a CHOICE with the largest comparison, the first such."""
-    best = first
-    for i in range(first + 1, end):
-        if numbers[factors[i, 0]] > numbers[factors[best, 0]]:
-            best = i
-    return best
-
-
-@compiled
-def play_back(steps, factors, weights, numbers, bars):
-    """Give bars of the numbers of a tape to those that they follow from, last ones first."""
-    for s in range(steps.shape[0] - 1, -1, -1):
-        function, place, first, end = steps[s, 0], steps[s, 1], steps[s, 2], steps[s, 3]
-        bar = bars[place]
-        if bar == 0.0 or function == POSITIVE:
-            continue
-        if function == ANGLE:
-            y, x = factors[first, 0], factors[first + 1, 0]
-            square = numbers[x] * numbers[x] + numbers[y] * numbers[y]
-            bars[y] += bar * numbers[x] / square
-            bars[x] -= bar * numbers[y] / square
-            continue
-        if function == CHOICE:
-            bars[factors[chosen(factors, first, end, numbers), 1]] += bar
-            continue
-        bar *= _rate(function, numbers[place], steps, factors, weights, numbers, s)
-        for i in range(first, end):
-            for j in range(FACTORS):
-                if factors[i, j] > 0:
-                    product = bar * weights[i]
-                    for m in range(FACTORS):
-                        if m != j:
-                            product *= numbers[factors[i, m]]
-                    bars[factors[i, j]] += product
-
-
-@compiled
-def play_along(steps, factors, weights, numbers, rates):
-    """Rates of the numbers of a tape from those of the numbers that are read."""
-    for s in range(steps.shape[0]):
-        function, place, first, end = steps[s, 0], steps[s, 1], steps[s, 2], steps[s, 3]
-        rate = 0.0
-        if function == ANGLE:
-            y, x = factors[first, 0], factors[first + 1, 0]
-            square = numbers[x] * numbers[x] + numbers[y] * numbers[y]
-            rate = (numbers[x] * rates[y] - numbers[y] * rates[x]) / square
-        elif function == CHOICE:
-            rate = rates[factors[chosen(factors, first, end, numbers), 1]]
-        elif function != POSITIVE:
-            for i in range(first, end):
-                for j in range(FACTORS):
-                    product = weights[i] * rates[factors[i, j]]
-                    for m in range(FACTORS):
-                        if m != j:
-                            product *= numbers[factors[i, m]]
-                    rate += product
-            rate *= _rate(function, numbers[place], steps, factors, weights, numbers, s)
-        rates[place] = rate
-
-
-@compiled
-def _rate(function, value, steps, factors, weights, numbers, s):
-    """Derivative of the function of a step by its sum of products."""
-    if function == ROOT:
-        return 0.5 / value
-    if function == INVERSE:
-        return -value * value
-    if function == COSINE or function == SINE:
-        x = 0.0
-        for i in range(steps[s, 2], steps[s, 3]):
-            product = weights[i]
-            for j in range(FACTORS):
-                product *= numbers[factors[i, j]]
-            x += product
-        return -np.sin(x) if function == COSINE else np.cos(x)
-    return 1.0

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
-from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import ENERGIES
+from sebody.model.numbering import record_counts
 from sebody.model.parts import SLIDES, TURNS
 from sebody.quantities import contacts, forces, inside, motion
 from sebody.quantities.algebra import total

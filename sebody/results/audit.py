@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import record_counts, rotational, stretch
+from sebody.assembly.numbering import rotational
 from sebody.basics.vectors import moment_of
 from sebody.contract.layout import ENERGIES
 from sebody.model.extent import extent
+from sebody.model.numbering import record_counts, stretch
 from sebody.model.parts import Element, Node, Superelement
 from sebody.quantities import forces
 from sebody.results import energy_balance

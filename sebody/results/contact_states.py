@@ -2,9 +2,9 @@
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element
 from sebody.quantities.contacts import OPEN
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.units import parsed_units
-from sebody.results.naming import STRESS, component_names, look_up
-from sebody.results.quantities import saved
+from sebody.quantities.names import STRESS
+from sebody.results.naming import component_names, look_up, saved
 from sebody.results.recording import Recording
 from sebody.results.units import unit
 

@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly import numbering
-from sebody.assembly.numbering import Numbering
 from sebody.fem import materials
-from sebody.model import mechanism, parts, time_functions
+from sebody.model import mechanism, numbering, parts, time_functions
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.reduction import invariants, recovery
 from sebody.results.saved_checks import check_numbering, check_part, check_tuple, fields_in_files
 

@@ -10,6 +10,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief
 from sebody.fem.stress import principal, von_mises
+from sebody.quantities.names import ENVELOPED
 from sebody.results.field_states import FieldStates
 
 AT_ONCE = 64        # states whose displacements are computed together
@@ -83,7 +84,6 @@ def _smallest(field: FieldStates, states: NDArray, static: bool) -> NDArray:
 
 
 _OF_STRESS = _von_mises, _largest, _smallest
-# quantities that have envelopes: (states, nodes) of a field and states
-ENVELOPES = {"von_mises": _von_mises, "largest_principal": _largest,
-             "smallest_principal": _smallest, "displacement": _lengths("displacements"),
-             "velocity": _lengths("velocities"), "acceleration": _lengths("accelerations")}
+# functions of a field and states, (states, nodes), by the quantity
+ENVELOPES = dict(zip(ENVELOPED, (
+    *_OF_STRESS, *map(_lengths, ("displacements", "velocities", "accelerations"))), strict=True))

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import record_counts
 from sebody.contract.layout import RECORD
+from sebody.model.numbering import record_counts
 from sebody.model.parts import Node
 from sebody.quantities.balance import Part, balance
 from sebody.quantities.numbers import Numbers

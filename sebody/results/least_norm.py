@@ -8,12 +8,13 @@ Every equation of a joint gives a force or a moment of the size of its multiplie
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, rotational
+from sebody.assembly.numbering import rotational
 from sebody.basics.errors import InputError
 from sebody.engine.least_norm import take_least_norm
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 
 
 def arm(model: Mechanism) -> float:

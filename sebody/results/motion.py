@@ -10,14 +10,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.motions import Motions, motions
-from sebody.assembly.numbering import record_counts
+from sebody.assembly.motions import motions
 from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import Counts
 from sebody.contract.layout import MOTION, OK, RECORD, RESIDUAL
 from sebody.kernels.abi import Arguments, at, call_kernel, pointer_to
+from sebody.model.numbering import record_counts
 from sebody.model.parts import Superelement
+from sebody.quantities.reading import Motions
 from sebody.results.recording import Recording
 
 READ = "q", "R", "v", "a", "frames", "frames_old"      # of a recorded state

@@ -1,35 +1,27 @@
-"""The grammar of quantities, in one place: the meaning of ``tip.position.y`` everywhere.
+"""Histories of quantities by the names of `sebody.quantities.names`."""
 
-=======================  =========================================================================
-``tip.position``         a quantity, by the table of `sebody.quantities.table`
-``tip.position.y``       a component: x, y, z of vectors, xx, xy, ... of rotation matrices and
-                         stresses, 0, 1, ... of everything else
-``tip.position.norm``    the length of a vector
-``tip.rotation.z``       of a rotation matrix its rotation vector, followed through full turns
-``energy``               a group of quantities of the model, see `GROUPS`
-=======================  =========================================================================
-"""
-
-from collections.abc import Sequence
 from itertools import product
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.basics.spelling import alike
-from sebody.quantities.table import OWNERS, find
-from sebody.results import quantities, rotations
+from sebody.quantities.names import (
+    AXES,
+    GROUPS,
+    NORM,
+    labels_of,
+    refuse_component,
+    split,
+    unknown_quantity,
+)
+from sebody.quantities.table import NODE, find
+from sebody.results import rotations
+from sebody.results.histories import histories
 from sebody.results.recording import Recording
 
-AXES, NORM = "xyz", "norm"
-STRESS = "xx", "yy", "zz", "yz", "zx", "xy"
-GROUPS = {"energy": ("energy.kinetic", "energy.strain", "energy.potential",
-                     "energy.external_work"),
-          "constraints": ("constraints.position", "constraints.velocity")}
-NUMBERED = {name for owner in OWNERS for name, row in owner.quantities.items() if row.numbered}
 SMALL_ANGLE = 1e-6      # rad: below, the axis of a rotation is that of the state before
 
 
@@ -50,8 +42,8 @@ def look_up(recording: Recording, name: str) -> NDArray:
         A name that nothing has, or a component that a quantity does not have.
     """
     whole, components = split(recording, name)
-    history = (np.column_stack([quantities.look_up(recording, one) for one in GROUPS[whole]])
-               if whole in GROUPS else quantities.look_up(recording, whole))
+    history = (np.column_stack([_whole(recording, one) for one in GROUPS[whole]])
+               if whole in GROUPS else _whole(recording, whole))
     for component in components:
         history = component_of(whole, history, component)
         whole = f"{whole}.{component}"
@@ -82,25 +74,6 @@ def is_known(recording: Recording, name: object) -> bool:
     return True
 
 
-def split(recording: Recording, name: str) -> tuple[str, list[str]]:
-    """The quantity or group that a name begins with, and the components behind it.
-
-    Raises
-    ------
-    InputError
-        A name that nothing has; the message has names that are like it.
-    """
-    inputs.name(name, "name of a quantity")
-    whole = name
-    components: list[str] = []
-    while whole not in GROUPS and find(recording, whole) is None:
-        before, _, last = whole.rpartition(".")
-        if not before or not (_may_be_component(last) or find(recording, before)):
-            raise _unknown(recording, name, whole, components)
-        whole, components = before, [last, *components]
-    return whole, components
-
-
 def component_of(name: str, history: NDArray, component: str) -> NDArray:
     """A component of a history (n, ...) of this name.
 
@@ -121,23 +94,6 @@ def component_of(name: str, history: NDArray, component: str) -> NDArray:
     if _is_rotation(history):
         history = history.reshape(len(history), -1)
     return history[:, labels.index(component)]
-
-
-def labels_of(shape: tuple[int, ...], name: str) -> list[str]:
-    """Components of a quantity of a shape in a state: of a matrix its rows, of a rotation all."""
-    if shape == (3, 3):
-        return [*map("".join, product(AXES, AXES))]
-    return _labels(shape[0], name, len(shape) > 1)
-
-
-def refuse_component(name: str, component: str, labels: Sequence[str] = ()) -> NoReturn:
-    """Refuse a component that a quantity does not have."""
-    if not labels:
-        raise InputError(f"{name}.{component} is unknown: {name} is one number, it has no "
-                         "components")
-    known = [*(AXES if len(labels) == 9 and labels[0] == "xx" else ()), *labels, NORM]
-    raise InputError(f"{name}.{component} is unknown: {name} has the components "
-                     f"{', '.join(known)}")
 
 
 def component_names(history: NDArray, name: str = "") -> list[str]:
@@ -167,28 +123,25 @@ def rotation_vectors(matrices: NDArray) -> NDArray:
     return np.unwrap(signs * angles)[:, None] * signs[:, None] * axes
 
 
-def _unknown(recording: Recording, name: str, whole: str, components: list[str]) -> InputError:
-    """The exception for a name that nothing has; `whole` is what there is before components."""
-    if components and (near := alike(whole, quantities.names(recording))):
-        meant = " or ".join(repr(".".join([one, *components])) for one in near)
-        return InputError(f"{name!r} is unknown: did you mean {meant}?")
-    return quantities.unknown_quantity(recording, name)
-
-
-def _may_be_component(last: str) -> bool:
-    return last in (*AXES, NORM, *STRESS, *map("".join, product(AXES, AXES))) or last.isdecimal()
-
-
 def _is_rotation(history: NDArray) -> bool:
     return history.shape[1:] == (3, 3)
 
 
-def _labels(size: int, name: str, has_inner: bool) -> list[str]:
-    """Names of the columns of a quantity, of its rows where these have columns."""
-    if name in GROUPS:
-        return [one.partition(".")[2] for one in GROUPS[name]]
-    quantity = name.rpartition(".")[2]
-    if quantity == "stress" or (not name and size == len(STRESS)):
-        return list(STRESS)
-    directions = size in (2, 3) and quantity not in NUMBERED and not has_inner
-    return list(AXES[:size]) if directions else [*map(str, range(size))]
+def saved(recording: Recording) -> list[str]:
+    """Names of the histories an output file holds."""
+    names = ["t"]
+    for name in recording.model.nodes:
+        names += [f"{name}.{quantity}" for quantity, row in NODE.items()
+                  if row.saved and row.has(recording, name)]
+    return [*names, "energy.kinetic", "energy.strain", "energy.potential", "energy.external_work",
+            "momentum", "angular_momentum"]
+
+
+def _whole(recording: Recording, name: str) -> NDArray:
+    """History of a whole quantity by its full name."""
+    found = find(recording, name)
+    if found is None:
+        raise unknown_quantity(recording, name)
+    quantity, owner = found
+    numbers = histories(recording)
+    return numbers.whole(quantity.formula(numbers, owner))

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, record_counts
 from sebody.contract.layout import ENERGIES, FIELD, RECORD
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, record_counts
 from sebody.model.summary import summary
 from sebody.results.energy_balance import energy_balance
 from sebody.results.least_norm import least_norm

@@ -13,7 +13,8 @@ from sebody.basics.units import Units, parsed_units
 from sebody.engine.clock import CONTROL
 from sebody.engine.scalars import record
 from sebody.model.summary import table
-from sebody.results import dataframes, naming, quantities
+from sebody.quantities import names
+from sebody.results import dataframes, naming
 from sebody.results.advice import kernels_that_pay
 from sebody.results.cautions import cautions
 from sebody.results.contact_states import normal_forces
@@ -21,7 +22,7 @@ from sebody.results.field import Field
 from sebody.results.field_quantities import field_of
 from sebody.results.hot_spots import HotSpots, hot_spots
 from sebody.results.least_norm import arm
-from sebody.results.quantities import saved
+from sebody.results.naming import saved
 from sebody.results.recording import Recording
 from sebody.results.saving import unpacked, write
 from sebody.results.static_summary import is_static, static_lines
@@ -128,7 +129,7 @@ class Result(Recording):
 
     def names(self) -> list[str]:
         """Names of all quantities, those of FE nodes inside bodies left out: these are many."""
-        return quantities.names(self)
+        return names.names(self)
 
     def field(self, name: str) -> Field:
         """Displacements, velocities and accelerations of the FE nodes of a superelement.

@@ -12,12 +12,12 @@ from typing import Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from sebody.assembly.numbering import Numbering, record_counts
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.compiler.user_functions import UserFunction
 from sebody.contract.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, record_counts
 from sebody.model.parts import Element, Superelement
 from sebody.reduction import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names

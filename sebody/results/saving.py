@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target, replacing
 from sebody.basics.files.array_files import json_of, opened
@@ -23,6 +22,7 @@ from sebody.basics.units import parsed_units
 from sebody.contract.layout import RECORD_T
 from sebody.engine.clock import CONTROL
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.results import hdf5
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.motions import Motions, motions
-from sebody.assembly.numbering import Numbering, record_counts
-from sebody.basics.errors import InputError
+from sebody.assembly.motions import motions
 from sebody.contract.layout import MOTION as ROW
 from sebody.contract.layout import RECORD
 from sebody.contract.read_numbers import (
@@ -29,13 +26,13 @@ from sebody.contract.read_numbers import (
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
-from sebody.quantities.algebra import back, dot
-from sebody.quantities.expressions import Number, Tape, root
+from sebody.model.numbering import Numbering, record_counts
+from sebody.quantities.expressions import Number
 from sebody.quantities.inside import FENodes
-from sebody.quantities.reading import Reading, reading
-from sebody.quantities.symbols import NoTape, Symbols
-from sebody.quantities.table import find
-from sebody.results import naming, nodal
+from sebody.quantities.names import split
+from sebody.quantities.reading import Motions, Reading, reading
+from sebody.quantities.symbols import Symbols
+from sebody.results import nodal
 from sebody.results.recording import Recording
 
 MOVES: dict[str | int, int] = {"q": OF_Q, "v": OF_V, "a": OF_A, FORCE: OF_FORCE, TOTAL: OF_TOTAL}
@@ -52,7 +49,7 @@ class States(Symbols):
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State,
                  start: NDArray | None = None):
-        super().__init__(model, numbering, system, state, Tape(), start)
+        super().__init__(model, numbering, system, state, start)
         self.recording = Recording(model, numbering, system, state, state.now[None].copy(), 0.0)
         self.bodies: dict[str, tuple[Motions, int]] = {}
         self._moved = 0
@@ -73,46 +70,9 @@ class States(Symbols):
         return {part: [self.tape.read(MOTION, first + k) for k in range(own.start, own.stop)]
                 for part, own in ROW.slices(group.counts).items()}
 
-    def of(self, name: str, axes: str = "") -> Any:
-        """A quantity, component or group: a number, a vector or a matrix of symbols.
-
-        Parameters
-        ----------
-        axes : str
-            Node in whose axes a component of a vector is given.
-
-        Raises
-        ------
-        InputError
-            A name that nothing has.
-        NoTape
-            A quantity that compiled code cannot evaluate.
-        """
-        whole, components = naming.split(self.recording, name)
-        value: Any
-        if whole in naming.GROUPS:
-            value = [self._whole(one) for one in naming.GROUPS[whole]]
-        else:
-            value = self._whole(whole)
-        if axes and shape_of(value) != (self.model.dimension,):
-            raise InputError(f"{whole!r} is no vector, which axes turn: leave out axes=")
-        if axes:
-            value = back(self.rotation(self.model.nodes[axes].rotation), value)
-        for component in components:
-            value = self._component(whole, value, component)
-            whole = f"{whole}.{component}"
-        return value
-
-    def put(self, name: str, axes: str = "") -> tuple[int, ...]:
-        """Let all numbers of a quantity be the next outputs; its shape in a state."""
-        value = self.of(name, axes)
-        for number in flat(value):
-            self.tape.put(number)
-        return shape_of(value)
-
     def is_inside(self, name: str) -> bool:
         """Whether a quantity is one of FE nodes: their tapes are long."""
-        owner = naming.split(self.recording, name)[0].rpartition(".")[0]
+        owner = split(self, name)[0].rpartition(".")[0]
         return owner not in self.model.nodes and owner in FENodes(self)
 
     @property
@@ -151,37 +111,3 @@ class States(Symbols):
     def reading(self) -> Reading:
         """The arrays of the tape."""
         return reading(self.tape, self.system, self.state, list(self.bodies.values()))
-
-    def _whole(self, name: str) -> Any:
-        found = find(self, name)
-        assert found is not None        # see `naming.split`
-        quantity, owner = found
-        return quantity.formula(self, owner)
-
-    def _component(self, name: str, value: Any, component: str) -> Any:
-        if not isinstance(value, Sequence):
-            naming.refuse_component(name, component)
-        if component == naming.NORM and shape_of(value) != (3, 3):
-            numbers = flat(value)
-            return root(dot(numbers, numbers))
-        if shape_of(value) == (3, 3) and component in (*naming.AXES, naming.NORM):
-            raise NoTape("a rotation vector, which is followed through turns")
-        labels = naming.labels_of(shape_of(value), name)
-        if shape_of(value) == (3, 3):
-            return flat(value)[labels.index(component)] if component in labels else (
-                naming.refuse_component(name, component, labels))
-        if component not in labels:
-            naming.refuse_component(name, component, labels)
-        return value[labels.index(component)]
-
-
-def flat(value: Any) -> list[Number]:
-    """All numbers of a number, a vector or a matrix."""
-    return [x for one in value for x in flat(one)] if isinstance(value, Sequence) else [value]
-
-
-def shape_of(value: Any) -> tuple[int, ...]:
-    """Shape of a number, a vector or a matrix."""
-    if not isinstance(value, Sequence):
-        return ()
-    return len(value), *(shape_of(value[0]) if value else ())

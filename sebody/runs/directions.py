@@ -4,10 +4,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, stretch
 from sebody.basics.vectors import moment_of
 from sebody.engine.state import State
 from sebody.model.body_points import shapes
+from sebody.model.numbering import Numbering, stretch
 from sebody.model.parts import DofBlock, Element
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from sebody.assembly.numbering import Numbering
 from sebody.engine.state import (
     FINEST,
     GAP,
@@ -13,6 +12,7 @@ from sebody.engine.state import (
 )
 from sebody.engine.system import System
 from sebody.model.model import Model
+from sebody.model.numbering import Numbering
 from sebody.results.contact_states import states
 from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction, multiplying, parties_of

@@ -12,8 +12,8 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.user_faults import functions
 
 # arrays of `System.control` that hold no addresses
-PLACED = ("tasks", "periods", "offsets", "channels", "coefficients", "sensors", "errors", "seeds",
-          "wires", "ends", "inputs", "limits", "parameters")
+PLACED = ("tasks", "periods", "offsets", "sensors", "reads", "steps", "factors", "weights",
+          "scales", "seeds", "wires", "ends", "inputs", "limits", "parameters")
 
 
 def fingerprint(run: Simulation) -> str:

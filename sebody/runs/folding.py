@@ -2,10 +2,11 @@
 
 from typing import NamedTuple
 
-from sebody.assembly.motions import Motions, motions
-from sebody.assembly.numbering import record_counts
+from sebody.assembly.motions import motions
 from sebody.contract.layout import MOTION
+from sebody.model.numbering import record_counts
 from sebody.model.parts import Superelement
+from sebody.quantities.reading import Motions
 from sebody.results.motion import evaluated
 from sebody.runs.limits.axial import Axial, Load
 from sebody.runs.limits.body_limits import limits_of, remedy

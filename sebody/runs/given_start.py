@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, coordinates, record_counts, stretch
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD
 from sebody.engine.state import State
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates, record_counts, stretch
 from sebody.results.result import Result
 
 APART = 1e-8        # of the extent, or rad: by which fixed and driven coordinates may differ

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
 
 from sebody.assembly.evaluation import evaluate, matrix
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.basics.errors import InputError
 from sebody.contract.layout import ACCELERATION, RESIDUAL, VELOCITY
 from sebody.engine.evaluate import move_prescribed, set_loads, to_body_axes
@@ -17,6 +16,7 @@ from sebody.engine.links import place_dependent
 from sebody.engine.state import ASKED, State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates
 from sebody.results.recording import Start
 from sebody.runs.redundancy import Solver, least, part_sizes, parties_of
 from sebody.runs.rigid_start import follow_drives

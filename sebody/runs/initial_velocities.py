@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering, coordinates
 from sebody.basics.errors import InputError
 from sebody.engine.state import State
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import DofBlock, Superelement
 from sebody.reduction import ReducedBody
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.close_rows import Grid, close_corners, stretches
-from sebody.assembly.numbering import Numbering
 from sebody.model.histories import of_columns
+from sebody.model.numbering import Numbering
 from sebody.model.time_functions import TimeFunction
 
 MANY, SHARE = 20, 0.1   # steps, and share of all steps, that close rows may divide unsaid

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import InputError
 from sebody.engine.matrix import THIN
 from sebody.engine.regularization import LIGHT
 from sebody.engine.state import State
 from sebody.engine.system import System
+from sebody.model.numbering import Numbering
 from sebody.runs.kkt_solver import LeastSquares, Relaxed, Scaled
 
 WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength

@@ -23,12 +23,13 @@ from numpy.typing import NDArray
 from scipy.linalg import null_space
 from scipy.sparse import bmat, csc_matrix, diags
 
-from sebody.assembly.numbering import Numbering, coordinates, placed, rotational, stretch
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, coordinates, stretch
 from sebody.model.parts import DofBlock, Superelement
 from sebody.runs.kkt_solver import factors
 from sebody.runs.redundancy import part_sizes

@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csc_matrix
 
 from sebody.assembly.axes import in_frames
-from sebody.assembly.numbering import coordinates
 from sebody.basics import inputs
 from sebody.basics.vectors import skew
 from sebody.contract.layout import AT_FRAME, AT_POSITIONS
+from sebody.model.numbering import coordinates
 from sebody.model.parts import DofBlock
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation

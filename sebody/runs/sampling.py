@@ -6,14 +6,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.contract.law_row import OUTSIDE
 from sebody.engine.control import set_input, set_next
 from sebody.engine.control_data import (
     COUNTS,
     HAS,
+    OUTPUT,
     STOP,
     WAITS,
 )
@@ -22,6 +21,7 @@ from sebody.engine.system import System
 from sebody.model.control_order import continuous, sampled
 from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.quantities.reading import Reading, evaluate
 from sebody.quantities.symbols import NoTape
 from sebody.results.histories import histories
@@ -38,10 +38,9 @@ class Sampling:
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
-        kinds = system.control.channels[:, 0]
         self._outside = [(COUNTS + system.control.periods.size + k, sensor)
                          for k, sensor in enumerate(numbering.memory.sensors)
-                         if kinds[k] == OUTSIDE]
+                         if system.control.sensors[k, OUTPUT] == 0]
         self.unsampled: tuple[NDArray, NDArray] | None = None   # by `begin`
         self._read: dict[str, Callable[[], float | NDArray]] = {}
         self._measure: dict[tuple[str, str], Callable[[], float | NDArray]] = {}

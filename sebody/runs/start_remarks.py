@@ -2,9 +2,9 @@
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.engine.state import State
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element, Superelement
 from sebody.model.ties import untied
 from sebody.runs.initial_velocities import changed, strained

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, eigh, null_space
 
-from sebody.assembly.numbering import Numbering
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import Element
 from sebody.results.contact_states import without_play
 from sebody.runs.directions import of_mesh

@@ -18,7 +18,6 @@ from scipy.sparse import csc_matrix
 
 from sebody.assembly.contracts import counts_of
 from sebody.assembly.evaluation import evaluate
-from sebody.assembly.numbering import Numbering, stretch
 from sebody.contract.layout import RESIDUAL, Row
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.state import State
@@ -26,6 +25,7 @@ from sebody.engine.system import System
 from sebody.kernels.loader import element_kernel
 from sebody.model.body_points import start_place
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, stretch
 from sebody.model.parts import Element
 from sebody.runs.directions import directions, of_point, pair, rotation_of
 from sebody.runs.redundancy import least

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from sebody.assembly.numbering import Numbering, placed, rotational
+from sebody.assembly.numbering import placed, rotational
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.runs.planning import Plan
 from sebody.runs.tolerance import Tolerance
 

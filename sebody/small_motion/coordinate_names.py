@@ -1,7 +1,7 @@
 """Names of the unknowns as users have them: ``tip.position.y``, ``beam.modes.2``."""
 
 from sebody.assembly.numbering import hidden_states
-from sebody.results.naming import AXES
+from sebody.quantities.names import AXES
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 

@@ -11,13 +11,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import coordinates
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T
 from sebody.contract.read_numbers import FORCE, LOAD, NOW, OF_A, OF_FORCE, OF_R
 from sebody.engine.evaluate import set_loads
 from sebody.engine.links import pull_back
-from sebody.quantities.reading import evaluate_loaded, play_along
+from sebody.kernels.tapes import play_along
+from sebody.model.numbering import coordinates
+from sebody.quantities.reading import evaluate_loaded
 from sebody.quantities.symbols import NoTape
 from sebody.results import rotations
 from sebody.results.postprocessing import Forces

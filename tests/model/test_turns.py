@@ -15,7 +15,7 @@ from sebody import (
     simulate,
 )
 from sebody.analysis import Ensemble, equilibrium, linearize, resume, save_state
-from sebody.assembly.numbering import stretch
+from sebody.model.numbering import stretch
 from sebody.model.variants import planar
 from sebody.results import Result
 

@@ -6,9 +6,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
 from sebody.pictures.curves import panels
+from sebody.quantities.names import names
 from sebody.quantities.table import OF_MODEL
 from sebody.results.naming import rotation_vectors, values
-from sebody.results.quantities import names
 from sebody.scenes import heavy_top, hinged_beam, squeezer
 
 MASS, STIFFNESS, AMPLITUDE = 0.5, 800.0, 0.03

@@ -11,8 +11,8 @@ from sebody import InputError, Model, simulate
 from sebody.fem import rectangle
 from sebody.pictures import drawn_bodies, page_plots
 from sebody.pictures.curves import values
+from sebody.quantities.names import names
 from sebody.results import animate
-from sebody.results.quantities import names
 
 STEP = 1 / 65535        # of the range of a column
 

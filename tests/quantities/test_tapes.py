@@ -12,11 +12,12 @@ from sebody.fem import rectangle, straight_beam
 from sebody.gradients import objectives
 from sebody.gradients.followed import Followed
 from sebody.gradients.sensors import Evaluated
+from sebody.kernels.tapes import play, play_along, play_back
 from sebody.quantities.expressions import Tape, angle, choice, cosine, inverse, positive, root, sine
-from sebody.quantities.reading import evaluate, play, play_along, play_back, reading
+from sebody.quantities.names import names
+from sebody.quantities.reading import evaluate, reading
 from sebody.quantities.symbols import NoTape
 from sebody.reduction import craig_bampton
-from sebody.results.quantities import names
 from sebody.results.tapes import States
 
 

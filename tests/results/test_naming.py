@@ -10,8 +10,9 @@ from sebody.cli.entry import main
 from sebody.explore.sweep import sweep
 from sebody.fem import rectangle, straight_beam
 from sebody.pictures.drawing import plot
+from sebody.quantities.names import split
 from sebody.reduction import ReducedBody, craig_bampton
-from sebody.results.naming import component_names, split, values
+from sebody.results.naming import component_names, values
 from sebody.scenes import planar_hinged_beam
 
 SECTION = rectangle(0.1, 0.05, youngs_modulus=2e9, poisson_ratio=0.3, density=1000.0)

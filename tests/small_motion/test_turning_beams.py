@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation
 from sebody.analysis import equilibrium, linearize, modes, vibrations
-from sebody.assembly.numbering import coordinates
 from sebody.fem import Section
+from sebody.model.numbering import coordinates
 from sebody.verify.atlas.theory import beck_load, cantilever, divergence, euler_load, flap
 
 FLAP_6 = 7.360373019            # benchmarks 3.1, eta = 6

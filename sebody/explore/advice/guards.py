@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from sebody.assembly.numbering import Numbering, stretch
 from sebody.explore.advice.measures import lengths
 from sebody.explore.advice.outcome import Doubt
 from sebody.explore.advice.quantities import Values
 from sebody.explore.advice.reference import Reference
 from sebody.model.model import Model
+from sebody.model.numbering import Numbering, stretch
 from sebody.model.variants.copying import copied
 from sebody.results.result import Result
 

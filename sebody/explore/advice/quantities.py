@@ -14,7 +14,8 @@ from sebody.explore.advice.measures import Measure
 from sebody.explore.advice.steady import steady_frequencies
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
-from sebody.results.naming import component_of, split
+from sebody.quantities.names import split
+from sebody.results.naming import component_of
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from numpy.typing import NDArray
 
-from sebody.assembly.numbering import Numbering
 from sebody.basics.errors import LimitWarning
 from sebody.explore.advice.changes import Step
 from sebody.explore.advice.quantities import Quantities, Values
 from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
+from sebody.model.numbering import Numbering
 from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.limits.watch import Watch

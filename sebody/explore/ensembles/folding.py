@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import RECORD_T
 from sebody.engine.arrays import Arrays
-from sebody.quantities.reading import play
+from sebody.kernels.tapes import play
 
 MAXIMUM, MINIMUM, RMS, INTEGRAL, FINAL, AT, SOFT_MAXIMUM = range(7)
 SEEN, LAST, LENGTH, FOUND = range(4)    # states so far, time of the last, stretch, whether a value

@@ -30,8 +30,9 @@ from sebody.engine.system import System
 from sebody.explore.ensembles import beginning
 from sebody.explore.ensembles.outputs import Fold, Output
 from sebody.explore.ensembles.start_values import Image
+from sebody.quantities.names import split
 from sebody.quantities.symbols import NoTape
-from sebody.results.naming import look_up, split
+from sebody.results.naming import look_up
 from sebody.results.nodal import MOTIONS
 from sebody.results.recording import Recording
 from sebody.results.tapes import States

@@ -7,24 +7,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.law_row import (
-    FIRST,
-    HELD,
-    INPUTS,
+    ANGLES,
+    AT,
+    AT_OUTPUTS,
     KIND,
     LAW_HEADER,
     OUTPUT_PLACES,
     OUTPUTS,
     PLACE,
     PORT,
-    READING_PLACES,
+    READ_PLACES,
+    READS,
 )
 from sebody.contract.layout import AT_CONSTANTS, AT_FRAME, AT_PORT, AT_ROTATIONS, HEADER
 from sebody.contract.member_row import ENERGIES, RUNNING
+from sebody.contract.read_numbers import OF_NOTHING, OF_Q, OF_R, OF_V
 from sebody.explore.ensembles.shared_constants import kernels_of_batches, rows_of
 from sebody.explore.ensembles.start_values import Image
 from sebody.kernels.loader import element_kernel_name, load, takes_one_member
 
 LAW = element_kernel_name("continuous")     # kernel of laws of continuous controllers
+READ = {OF_Q: "q", OF_V: "v", OF_R: "R"}            # of the state, by kinds of numbers
 
 
 class Rows(NamedTuple):
@@ -89,7 +92,7 @@ def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
     behind = HEADER + row[AT_ROTATIONS] + width
     begin, port = row[AT_CONSTANTS], 3 * row[AT_PORT] + np.arange(3)
     law = row[behind:] if name == LAW else None
-    own = row[AT_FRAME] + np.arange(len(load(name).MEMORY) if law is None else law[INPUTS])
+    own = row[AT_FRAME] + np.arange(len(load(name).MEMORY) if law is None else law[ANGLES])
     read = {"q": row[behind - width:behind], "frames": own, "frames_old": own,
             "R": (9 * row[HEADER:behind - width, np.newaxis] + np.arange(9)).ravel(),
             "loads": port[port < state.loads.size],
@@ -97,8 +100,10 @@ def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
     read |= {"v": read["q"], "a": read["q"], "T": read["R"]}
     written = {"frames": own}
     if law is not None:
-        readings, ends = _parts_of_law(law)
-        held = readings[readings[:, KIND] == HELD, FIRST]
+        reads, ends = _parts_of_law(law)
+        for kind, name in READ.items():
+            read[name] = np.union1d(read[name], reads[reads[:, KIND] == kind, AT])
+        held = reads[reads[:, KIND] == OF_NOTHING, AT]
         driving = ends[ends[:, PORT] >= 0]
         read["frames"] = np.concatenate([own, held])
         written = {"frames": np.concatenate([own, ends[:, PLACE], driving[:, PLACE] + 2]),
@@ -113,8 +118,8 @@ def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
 
 
 def _parts_of_law(law: NDArray) -> tuple[NDArray, NDArray]:
-    """The readings and outputs of a continuous controller in its row, see `contract.law_row`."""
-    first = LAW_HEADER + READING_PLACES * law[INPUTS]
-    end = first + OUTPUT_PLACES * law[OUTPUTS]
-    return (law[LAW_HEADER:first].reshape(-1, READING_PLACES),
-            law[first:end].reshape(-1, OUTPUT_PLACES))
+    """What a continuous controller reads and sets, see `contract.law_row`."""
+    reads = law[LAW_HEADER:LAW_HEADER + READ_PLACES * law[READS]]
+    first = law[AT_OUTPUTS]
+    ends = law[first:first + OUTPUT_PLACES * law[OUTPUTS]]
+    return reads.reshape(-1, READ_PLACES), ends.reshape(-1, OUTPUT_PLACES)

@@ -6,11 +6,11 @@ from scipy.linalg import LinAlgError, eigh, null_space
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.evaluation import matrix
-from sebody.assembly.numbering import record_counts
 from sebody.basics.errors import InputError
 from sebody.contract.layout import ENERGIES, RECORD_T
 from sebody.engine import growth
 from sebody.engine.evaluate import to_body_axes
+from sebody.model.numbering import record_counts
 from sebody.model.parts import Element
 from sebody.results import energy_balance
 from sebody.results.audit import DRIFT

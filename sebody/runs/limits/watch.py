@@ -11,14 +11,15 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sebody.assembly.motions import Motions, motions
-from sebody.assembly.numbering import Numbering, record_counts
+from sebody.assembly.motions import motions
 from sebody.basics import inputs
 from sebody.basics.errors import LimitWarning
 from sebody.contract.layout import MOTION
 from sebody.engine.state import Scheme
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering, record_counts
 from sebody.model.parts import Superelement
+from sebody.quantities.reading import Motions
 from sebody.results.motion import evaluated
 from sebody.results.recording import Recording
 from sebody.runs.limits.body_limits import (

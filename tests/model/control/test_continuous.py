@@ -182,11 +182,23 @@ def refused(message, *arguments, build=rotor, **options):
     assert "loop" not in model.controllers and all(load.law is None for load in model.loads)
 
 
+@pytest.mark.parametrize("name, message", [
+    ("hinge.force.x", "controller 'loop' is continuous and cannot read 'hinge.force.x': .*rate="),
+    ("hub.acceleration.x", "cannot read 'hub.acceleration.x'.*rate="),
+    ("energy.kinetic", "cannot read 'energy.kinetic'.*rate="),
+    ("motor.power", "cannot read 'motor.power'.*rate="),
+    ("hub.position", "controller 'loop' reads 'hub.position', which is several numbers: give one"),
+    ("hub.positoin.x", "controller 'loop': 'hub.positoin.x' is unknown: did you mean")])
+def test_inputs_that_are_no_motion_are_refused_at_the_run(name, message):
+    model = rotor()
+    model.controller("loop", state_feedback([[1.0]]), [name], ["motor"])
+    with pytest.raises(InputError, match=message):
+        Simulation(model, 0.01)
+
+
 def test_what_is_refused():
     """In words, with a remedy, and nothing is left in the model."""
     law = state_feedback([[1.0]])
-    refused("cannot read 'hinge.force.x'.*rate=", law, ["hinge.force.x"], ["motor"])
-    refused("cannot read 'hub.acceleration.x'.*rate=", law, ["hub.acceleration.x"], ["motor"])
     refused("discrete time: give period=", discrete(0.5, 1.0, 1.0, 0.0), ["hub.rotation"],
             ["motor"])
     refused("continuous time.*leave out period=", linear(-0.5, 1.0, 1.0, 0.0), ["hub.rotation"],
