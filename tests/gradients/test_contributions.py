@@ -5,9 +5,9 @@ import pytest
 
 from sebody import InputError, Model, Simulation, simulate
 from sebody.analysis import contributions
-from sebody.assembly.numbering import coordinates
 from sebody.gradients.ranking import ranked
 from sebody.gradients.simplifications import Deformation
+from sebody.model.numbering import coordinates
 from sebody.model.variants import keep_modes, rigid, with_options
 from sebody.runs.schemes import generalized_alpha
 from tests import differentiated as scenes
