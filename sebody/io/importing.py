@@ -233,7 +233,7 @@ def _grounded(file: BodyFile, base: ArrayLike | None) -> BodyFile:
                          "it out")
     body = grounded_body(*(parts[name] for name in ("stiffness", "mass", "coordinates", "keeps",
                                                     "modes")), parts.get("damping"), base,
-                         units=file.units)
+                         units=file.units, outputs=parts.get("outputs"))
     return replace(file, parts={**body_parts(body), "missing": parts.get("missing", {})},
                    names=(*file.names, "base"))
 

@@ -25,7 +25,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.reduction import checks
 from sebody.reduction.body import ReducedBody
-from sebody.reduction.loads import named_vectors
+from sebody.reduction.loads import named_outputs, named_vectors
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.reduction.summary import place
 
@@ -37,7 +37,8 @@ def grounded_body(stiffness: ArrayLike, mass: ArrayLike, coordinates: ArrayLike,
                   damping: ArrayLike | None = None, base: ArrayLike | None = None,
                   coupling: ArrayLike | None = None, rigid_mass: ArrayLike | None = None,
                   self_weight_stiffness: ArrayLike | None = None,
-                  loads: Mapping[str, ArrayLike] | None = None, units: str = "") -> ReducedBody:
+                  loads: Mapping[str, ArrayLike] | None = None, units: str = "",
+                  outputs: Mapping[str, ArrayLike] | None = None) -> ReducedBody:
     """Superelement of matrices of a structure whose base is held.
 
     Its last boundary node is the base, which `Model.foundation` fixes.
@@ -68,6 +69,8 @@ def grounded_body(stiffness: ArrayLike, mass: ArrayLike, coordinates: ArrayLike,
         Loads on these coordinates by name, see `Model.body_load`.
     units : str
         Units of its numbers, such as ``m kg N s``.
+    outputs : mapping of (m, n), optional
+        Output matrices by name, of these coordinates: of motion relative to the base.
 
     Raises
     ------
@@ -95,6 +98,7 @@ def grounded_body(stiffness: ArrayLike, mass: ArrayLike, coordinates: ArrayLike,
     checks.check_held(K, R, names)
     checks.check_positive(M, "mass", names)
     vectors = named_vectors({} if loads is None else loads, len(K), "coordinates of the interfaces")
+    rows = named_outputs({} if outputs is None else outputs, len(K))
     P, whole = np.hstack([-R, np.eye(len(K))]), _whole_mass(M, R, coupling, rigid_mass, base)
     order = _order(keeps, dimension, modes)
 
@@ -105,6 +109,7 @@ def grounded_body(stiffness: ArrayLike, mass: ArrayLike, coordinates: ArrayLike,
         free(K), whole[np.ix_(order, order)], np.vstack([points, at]), (*keeps, "full"), modes,
         None if C is None else free(C), base=len(points), units=units,
         loads={name: (P.T @ load)[order] for name, load in vectors.items()},
+        outputs={name: (matrix @ P)[:, order] for name, matrix in rows.items()},
         notes=(f"held to the ground at {place(at)}: its base is boundary node {len(points)}",
                "with inertial coupling with its base" if coupled else
                "without inertial coupling with its base, which therefore stays at rest, and "
