@@ -2,7 +2,8 @@
 
 Bars of a quantity are given to the numbers that its tape reads. Those of forces of elements go to
 the motion by the elements' products with weights, see `products`; those of rotation matrices to
-rotations by ``dR = R skew(theta)``; those of dependent positions to what they follow from.
+rotations by ``dR = R skew(theta)``; those of energies by `energy_rows`; those of dependent positions
+to what they follow from.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, PREPARE, TRANSPOSED
 from sebody.contract.read_numbers import (
+    ENERGY,
     FORCE,
     LOAD,
     NOW,
@@ -28,6 +30,7 @@ from sebody.contract.read_numbers import (
     TOTAL,
 )
 from sebody.gradients.element_products import ROWS, run_element
+from sebody.gradients.energy_rows import energy_rows, set_energy_rows
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
@@ -43,7 +46,7 @@ from sebody.runs.simulation import Simulation
 
 MOVED = 1e-3            # change of kept numbers that shows which quantities depend on them
 ROUNDING = 1e-12
-DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD}
+DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD, ENERGY}
 
 
 class Rows(NamedTuple):
@@ -80,13 +83,15 @@ class Followed:
         states.put(quantity)
         kinds = states.kinds
         if not kinds <= DIFFERENTIATED:
-            raise NoTape("energies and residuals")
-        self.kinematic = not kinds & {FORCE, TOTAL}
+            raise NoTape("residuals")
+        self.kinematic = not kinds & {FORCE, TOTAL, ENERGY}
         self.products: Products | None = None
         if not self.kinematic:
             self.products = Products.of(run)
             if self.products is None:
                 raise NoTape("forces of elements without products")
+        energies = [place for kind, place in states.tape.inputs if kind == ENERGY]
+        self.energies = energy_rows(run, energies) if energies else None
         self.reading = states.reading()
         self.places = states.depends()
         steady = not states.tape.steps and not linear.followers and np.isin(
@@ -107,6 +112,9 @@ class Followed:
                   if products is None else
                   _follow_forces(linear.system, linear.state, self.reading, self.places, products,
                                  rows))
+        if status == OK and products is not None and self.energies is not None:
+            status = _follow_energies(linear.system, linear.state, self.reading, products,
+                                      self.energies, rows)
         if status != OK or not np.isfinite(rows).all():
             raise InputError(f"quantity {self.quantity!r} has no derivative at t = "
                              f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
@@ -205,6 +213,27 @@ def _follow_forces(system, state, reading, places, products, out):
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, out[:, c])
     return OK
+
+
+@compiled
+def _follow_energies(system, state, reading, products, energies, out):
+    """Add what outputs depend on by energies, in the state in which they were followed."""
+    status = set_energy_rows(system, state, products, energies)
+    w = np.zeros(out.shape[2])
+    found = np.zeros((3, out.shape[2]))
+    for c in range(out.shape[1]):
+        bars = np.zeros(reading.numbers.size)
+        bars[reading.outputs[c]] = 1.0
+        play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
+        found[:] = 0.0
+        for i in range(reading.inputs.shape[0]):
+            if reading.inputs[i, 1] == ENERGY:
+                for r in range(2):
+                    found[r] += bars[reading.inputs[i, 0]] * energies.rows[r, reading.inputs[i, 2]]
+        if system.links.dependent.shape[0] > 0:
+            pull_back_bars(system, state, w, found)
+        out[:, c] += found
+    return status
 
 
 @compiled

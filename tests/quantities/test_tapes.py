@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from differentiated import place
 
-from sebody import Model, Simulation
+from sebody import Model, Simulation, rest_to_rest
 from sebody.analysis import final, gradient
 from sebody.catalogue import builder
 from sebody.contract.read_numbers import NOW
-from sebody.fem import rectangle, straight_beam
+from sebody.fem import planar_beam, rectangle, straight_beam
 from sebody.gradients import objectives
 from sebody.gradients.followed import Followed
 from sebody.gradients.sensors import Evaluated
@@ -19,6 +19,9 @@ from sebody.quantities.reading import evaluate, reading
 from sebody.quantities.symbols import NoTape
 from sebody.reduction import craig_bampton
 from sebody.results.tapes import States
+
+
+ENERGIES = "energy.strain", "energy.potential", "energy.kinetic", "momentum", "momentum.norm"
 
 
 def linked() -> Model:
@@ -68,8 +71,8 @@ def test_every_quantity_has_its_value(made):
         first = last
 
 
-def test_derivatives_of_motions_and_forces(monkeypatch):
-    """Followed backwards, against differences of the quantity in states moved forth and back."""
+def compared(monkeypatch, model, quantities, t_end=0.02):
+    """Derivatives followed backwards beside differences in states moved forth and back."""
     made = {}
     look = objectives.sensor_of
 
@@ -77,13 +80,10 @@ def test_derivatives_of_motions_and_forces(monkeypatch):
         made.update(run=run, linear=linear, history=history)
         return look(run, quantity, shape, linear, history)
     monkeypatch.setattr(objectives, "sensor_of", sensor_of)
-    gradient(linked(), 1e-3, 0.02, {"x": final("ball.position")}, ["bob.mass"])
+    gradient(model, 1e-3, t_end, {"x": final("energy.kinetic")}, ["gravity.y"])
     run, linear, history = made["run"], made["linear"], made["history"]
     event, seen = len(history.rows) - 2, set()
-    for name in ("rod.force", "rod.local_force.x", "slide.local_moment", "hinge.angle",
-                 "slide.displacement", "slide.speed", "hinge.rate", "tip.acceleration",
-                 "beam.a.force", "b.rotation", "beam.forces", "hinge.moment", "spring.force.norm",
-                 "tip.velocity.norm"):
+    for name in quantities:
         followed = Followed(run, name, linear, history)
         size = len(followed.reading.outputs)
         other = Evaluated(run, name, size, linear, history)._differentiated(event)
@@ -92,7 +92,34 @@ def test_derivatives_of_motions_and_forces(monkeypatch):
             scale = max(np.abs(part).max(), 1e-7 * largest)
             assert np.abs(own - part).max() < 1e-8 * scale, name
         seen.add(followed.kinematic)
-    assert seen == {True, False}
+    return seen
+
+
+def test_derivatives_of_motions_and_forces(monkeypatch):
+    assert compared(monkeypatch, linked(), (
+        "rod.force", "rod.local_force.x", "slide.local_moment", "hinge.angle",
+        "slide.displacement", "slide.speed", "hinge.rate", "tip.acceleration", "beam.a.force",
+        "b.rotation", "beam.forces", "hinge.moment", "spring.force.norm", "tip.velocity.norm",
+        *ENERGIES)) == {True, False}
+
+
+@pytest.mark.parametrize("inertia", ["frame_axes", "material", "floating_field", "rigid_part"])
+@pytest.mark.parametrize("planar", [False, True])
+def test_derivatives_of_energies(monkeypatch, inertia, planar):
+    """Of bodies with each option of inertia, on a base that is moved."""
+    model = Model(planar=planar)
+    points, gravity = [(0.0, 0.0, 0.0), (0.8, 0.6, 0.0)], (0.4, -9.0, 2.0)
+    if planar:
+        points, gravity = [point[:2] for point in points], gravity[:2]
+    section = rectangle(0.03, 0.02, 2e9, 0.3, 1200.0)
+    fe = (planar_beam if planar else straight_beam)(*points, section, elements=4)
+    base, tip = (model.node(name, point) for name, point in zip(("base", "tip"), points,
+                                                                strict=True))
+    model.gravity(gravity)
+    model.superelement("beam", craig_bampton(fe, [(0, "full"), (4, "full")], 2), [base, tip],
+                       inertia=inertia)
+    model.move(base, np.eye(len(gravity))[0], rest_to_rest(0.3, 0.1))
+    compared(monkeypatch, model, ENERGIES)
 
 
 def test_functions_forth_and_back():
