@@ -1,9 +1,9 @@
 """Exact derivatives of quantities by the states of a run: their tapes, followed backwards.
 
 Bars of a quantity are given to the numbers that its tape reads. Those of forces of elements go to
-the motion by the elements' products with weights, see `products`; those of rotation matrices to
-rotations by ``dR = R skew(theta)``; those of energies by `energy_rows`; those of dependent positions
-to what they follow from.
+the motion by the elements' products with weights, see `products`; those of energies by
+`energy_rows`; those of rotation matrices to rotations by ``dR = R skew(theta)``; those of dependent
+positions to what they follow from.
 """
 
 from __future__ import annotations

@@ -20,7 +20,6 @@ from sebody.quantities.symbols import NoTape
 from sebody.reduction import craig_bampton
 from sebody.results.tapes import States
 
-
 ENERGIES = "energy.strain", "energy.potential", "energy.kinetic", "momentum", "momentum.norm"
 
 
