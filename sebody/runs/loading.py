@@ -20,6 +20,7 @@ from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import (
     FAR,
     Found,
+    Work,
     balance,
     linear,
     moved_by,
@@ -69,6 +70,7 @@ class Loading:
         self.share, self.step = 0.0, 1.0 / steps
         self.notes: list[str] = []
         self.judged = not steady.rotates
+        self._work = Work()
         self._slack = False         # what has settled has motions without stiffness of its own
         # whether all motions have a stiffness without the loads
         self._unstable = False      # what is kept
@@ -121,7 +123,7 @@ class Loading:
         if not self.judged:
             if found is None:       # motions of what spins may have no stiffness
                 self._back()
-                return settle(run, tolerance, spin, near=False)
+                return settle(run, tolerance, spin, False, self._work)
             return True
         if found is not None and self._is_stable(target, found.tangent):
             return self._follows(target, found.first)
@@ -154,7 +156,7 @@ class Loading:
             return False
         now = self.run.state.now.copy()
         self._back()
-        if settle(self.run, self.tolerance, spin, near=self._slack):
+        if settle(self.run, self.tolerance, spin, self._slack, self._work):
             self._refuse_folded(target)
             self._slack = True
             return True
@@ -180,8 +182,8 @@ class Loading:
 
     def _rests(self, spin: Spin, target: float) -> bool:
         """Whether the structure settles, from where it is, in a stable state."""
-        return settle(self.run, self.tolerance, spin, near=False) and self._is_stable(
-            target, linear(self.run, spin, None)[0])
+        return (settle(self.run, self.tolerance, spin, False, self._work)
+                and self._is_stable(target, linear(self.run, spin, None)[0]))
 
     def _leave(self, spin: Spin, target: float, tangent: csc_matrix) -> bool:
         """Leave an unstable state to one of its sides; True, as it is kept where neither rests."""
@@ -197,7 +199,7 @@ class Loading:
                     return True
             self.run.state.now[:] = found
         self._unstable = True
-        self.notes.append(f"unstable from {target:.4g} of the load on")
+        self.notes.append(f"unstable from {target:.4g} of the load on" + self._searched())
         return True
 
     def _snap(self, spin: Spin, target: float) -> bool:
@@ -235,12 +237,17 @@ class Loading:
                     "resist this load")
         if lost := self._softest_now(tangent):
             return (f"the structure buckles or snaps, mostly at {lost}, and settles in no stable "
-                    "state nearby" + ("; unstable='leave' lets it move on" if self.keep else ""))
+                    f"state nearby{self._searched()}"
+                    + ("; unstable='leave' lets it move on" if self.keep else ""))
         if size(run, correction) > FAR:
             return (f"a small part of the load moves {self._name(correction)} far: use more "
                     "steps, or supports for what is free to move")
         return (f"forces on {self._name(solver.scale * residual)} do not come to balance: run "
                 "the model with damping until it rests")
+
+    def _searched(self) -> str:
+        """How long stable states were looked for in vain."""
+        return f", where {self._work.vain} iterations found none" * bool(self._work.vain)
 
     def _softest_now(self, tangent: csc_matrix) -> str:
         """Where the softest motion is, if it has lost its stiffness since the loads began."""

@@ -35,7 +35,8 @@ LEAST = 1.0 / 64.0          # part of a correction: those that do not shrink are
 NUDGE = 1e-3                # of an unstable state along its softest motion, in extents or radians
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
-STEPS = 1500                # of a motion to rest: arches of forty rods that fall need 500
+SEARCH = 2500               # iterations of a motion to rest: falling arches of forty rods take 1500
+SEARCHES = 4000             # and of all motions of a structure that lead to no rest
 FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
 SLOW, SOFTEST = 0.1, 1e-9   # steps that shrink by less need softer springs, down to this rate
 SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
@@ -54,6 +55,18 @@ class Springs(NamedTuple):
     R: NDArray
 
 
+class Work:
+    """Iterations that are left for searches of states of rest; those that find one are free."""
+
+    def __init__(self) -> None:
+        self.left = SEARCHES
+
+    @property
+    def vain(self) -> int:
+        """Iterations that led to nothing."""
+        return SEARCHES - self.left
+
+
 class Found(NamedTuple):
     """An equilibrium by Newton's iteration."""
 
@@ -62,7 +75,7 @@ class Found(NamedTuple):
 
 
 def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None = None,
-            stiff: bool = False) -> Found | None:
+            stiff: bool = False, work: Work | None = None) -> Found | None:
     """Newton's iteration with full corrections, then, from the same start, with shortened ones.
 
     Slender structures need full ones: a correction across stretches such a structure to second
@@ -75,6 +88,8 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
         With these it may end where a correction is `ROUGH` times what they are stretched by.
     stiff : bool
         Nothing is found where motions have no stiffness.
+    work : Work, optional
+        Its iterations are counted.
 
     Returns
     -------
@@ -82,15 +97,16 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
         None where no equilibrium is found.
     """
     start = run.state.now.copy()
-    found, ended = _balance(run, tolerance, spin, springs, stiff, FULL, 1.0)
+    work = work or Work()
+    found, ended = _balance(run, tolerance, spin, springs, stiff, work, FULL, 1.0)
     if not ended:
         run.state.now[:] = start
-        found, _ = _balance(run, tolerance, spin, springs, stiff, ITERATIONS, LEAST)
+        found, _ = _balance(run, tolerance, spin, springs, stiff, work, ITERATIONS, LEAST)
     return found
 
 
 def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None, stiff: bool,
-             iterations: int, least: float) -> tuple[Found | None, bool]:
+             work: Work, iterations: int, least: float) -> tuple[Found | None, bool]:
     """The equilibrium, if one is found, and whether this ended before all iterations.
 
     Corrections that do not shrink are halved, to no less than `least` of them.
@@ -100,6 +116,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | N
     far = FAR if np.any(run.system.magnitude[:n] > 0.0) else 1.0    # else of what it leads to
     first, last, part = np.nan, np.inf, 1.0
     for _ in range(iterations):
+        work.left -= 1
         try:
             tangent, residual = linear(run, spin, springs)
         except InputError:              # too far: a state that no element can evaluate
@@ -122,7 +139,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | N
     return None, False
 
 
-def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
+def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work) -> bool:
     """Let the structure move to where it rests; False where it does not come to rest.
 
     Each step must end where the potential of loads and springs is least: at a largest one, or at a
@@ -132,25 +149,29 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     ----------
     near : bool
         Whether it rests nearly where it is.
+    work : Work
+        What is left of it bounds the search; iterations that lead to nothing are taken off.
     """
     unit, start = pace(run, spin), run.state.now.copy()
     if not 0.0 < unit < np.inf:
         return False
     rate, faster, lowest = (LAST if near else FIRST) * unit, FASTEST, LAST * unit
-    last = np.inf
-    for _ in range(STEPS):
+    last, before = np.inf, work.left
+    while work.left > max(before - SEARCH, 0):
         kept, ending = run.state.now.copy(), rate <= lowest
         springs = _springs(run, rate)
-        found = balance(run, tolerance, spin, springs)
+        found = balance(run, tolerance, spin, springs, work=work)
         moved = size(run, moved_by(run, kept))
         if found is None or moved > FAR or not (
-                spin.rotates or _is_least(run, linear(run, spin, springs)[0], unit, ending)):
+                spin.rotates or _is_least(run, linear(run, spin, springs)[0], unit,
+                                          ending or moved < NUDGE)):
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
             if rate > unit / LAST:
                 return False
             continue
         if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance):
+            work.left = before
             return True
         if ending and moved > SLOW * last:
             lowest = max(lowest / FASTEST, SOFTEST * unit)
@@ -161,10 +182,10 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool) -> bool:
     return False
 
 
-def _is_least(run: Simulation, tangent: csc_matrix, unit: float, ending: bool) -> bool:
-    """Whether a potential is least; stiffer springs cost less than certainty until they end."""
+def _is_least(run: Simulation, tangent: csc_matrix, unit: float, rests: bool) -> bool:
+    """Whether a potential is least; stiffer springs cost less than certainty until it rests."""
     stiffness = Stiffness(run, tangent, unit)
-    return stiffness.stable() if ending else stiffness.surely_stable()
+    return stiffness.stable() if rests else stiffness.surely_stable()
 
 
 def nudge(run: Simulation, motion: NDArray, side: float) -> None:

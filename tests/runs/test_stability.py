@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, LimitWarning, Model, SimulationError
 from sebody.analysis import equilibrium, vibrations
 from sebody.fem import circle
+from sebody.runs import settling
+from sebody.scenes import pole_on_cart
 
 ACROSS = 1e4            # stiffness that holds a truss in its plane
 TURN = Rotation.from_rotvec([0.7, -0.4, 0.9]).as_matrix()
@@ -135,6 +137,18 @@ def test_a_portal_leaves_its_plane():
     share = float(result.stability.split("unstable state at ")[1].split()[0])
     assert result.stability.startswith("stable") and 0.25 / 0.4 < share < 0.27 / 0.4
     assert vibrations(result, 1).omega[0] > 0.0
+
+
+def test_a_pole_on_a_cart_hangs_or_the_search_for_that_ends(monkeypatch):
+    """It stands upright as it is built, and hangs after half a turn."""
+    result = equilibrium(pole_on_cart.pole(), 1)
+    assert result.stability.startswith("stable")
+    hangs = result["top.position"][-1] - result["foot.position"][-1]
+    assert hangs == pytest.approx([0.0, -1.0], abs=1e-3)        # its own weight stretches it
+    monkeypatch.setattr(settling, "SEARCHES", 60)
+    with pytest.warns(LimitWarning, match="is unstable .* on, where 6[0-9] iterations found none"):
+        result = equilibrium(pole_on_cart.pole(), 1)
+    assert result["top.position"][-1] == pytest.approx([0.0, 1.0], abs=1e-3)
 
 
 def test_nothing_is_said_of_loads_that_follow():
