@@ -71,7 +71,7 @@ OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_spa
           "results/hdf5": {"h5py"}, "basics/hdf5": {"h5py"},
           "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},
-          "small_motion/state_space": {"control"},
+          "small_motion/state_space": {"control"}, "reduction/pardiso": {"pypardiso"},
           "cli/entry": {"shtab"}, "explore/executors": {"distributed"}, "explore/table": {"pandas"}}
 
 

@@ -79,6 +79,11 @@ class ClampedInterior:
         self._watch = watch
 
     @property
+    def factored_by(self) -> str:
+        """Name of what has factored the stiffness."""
+        return self._factor.by
+
+    @property
     def count(self) -> int:
         """Number of independent motions with the boundary clamped."""
         return len(self.internal) - self._means.shape[0]

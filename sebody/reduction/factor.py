@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import SuperLU, splu
 
 from sebody.basics.errors import InputError
+from sebody.reduction.pardiso import Pardiso
 
 _SINGULAR = 1e-13  # ratio of pivot to diagonal entry below which a stiffness is singular
 STRAIN = 1e-6  # of a motion without strain, relative to the summands of its forces
@@ -17,6 +18,7 @@ _STILL = 1e-8  # motion of held rows that is rounding, relative to the extent of
 _RESIDUAL = 1e-8    # of equations that a user's factor has solved, relative to their summands
 _SUSPECT = 1e-11  # lowest eigenvalue above which no pivot is looked at
 _SMALL = 5000  # DOFs up to which pivots are looked at in any case
+_LARGE = 20_000     # DOFs above which PARDISO factors, where there is one
 _SHOWN, _LISTED = 5, 60  # nodes that a message names, DOFs that it looks for them at
 
 
@@ -48,7 +50,13 @@ class FactoredStiffness:
     remedy : str
         What to do about other motions without strain.
     factor : function, optional
-        A user's, see `Factor`; SuperLU by default.
+        A user's, see `Factor`; by default PARDISO of large matrices, where pypardiso is installed,
+        else SuperLU.
+
+    Attributes
+    ----------
+    by : str
+        Name of what has factored the matrix.
 
     Raises
     ------
@@ -64,11 +72,16 @@ class FactoredStiffness:
             order = linalg.qr(free.T, mode="r", pivoting=True)[1]
             self._kept = np.setdiff1d(self._kept, order[:free.shape[1]])
             stiffness = stiffness[self._kept][:, self._kept]
-        self._factor = None
-        if len(self._kept):
-            own = None if factor is None else _of_user(stiffness, factor)
-            self._factor = own or _factorise(stiffness, lambda row: name(int(self._kept[row])),
-                                             remedy)
+        self._factor, self.by = None, "SuperLU"
+        if not len(self._kept):
+            return
+        if factor is not None:
+            self._factor, self.by = _of_user(stiffness, factor), named(factor)
+        elif len(self._kept) > _LARGE:
+            self._factor, self.by = _by_pardiso(stiffness), "PARDISO"
+        if self._factor is None:
+            self._factor = _factorise(stiffness, lambda row: name(int(self._kept[row])), remedy)
+            self.by = "SuperLU"
 
     def solve(self, forces: NDArray) -> NDArray:
         """Displacements (n,) or (n, k) of forces, 0 at pinned DOFs."""
@@ -76,6 +89,19 @@ class FactoredStiffness:
         if self._factor is not None:
             result[self._kept] = self._factor.solve(np.ascontiguousarray(forces[self._kept]))
         return result
+
+
+def named(factor: Factor) -> str:
+    """Name of a user's factor."""
+    return str(getattr(factor, "__name__", "a user function"))
+
+
+def _by_pardiso(stiffness: sparse.csc_array) -> Solver | None:
+    """Factors by PARDISO; None without it, or where it finds none."""
+    try:
+        return _of_user(stiffness, Pardiso)
+    except InputError:
+        return None
 
 
 def _of_user(stiffness: sparse.csc_array, factor: Factor) -> Solver | None:

@@ -89,7 +89,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     judged : bool
         Note up to which frequencies the modes are good ('craig-bampton', 'guyan', 'rubin').
     factor : function, optional
-        Factors the stiffness in the place of SuperLU: of a sparse symmetric matrix (n, n), both
+        Factors the stiffness in the place of SuperLU, or of PARDISO where pypardiso is installed
+        and the matrix is large: of a sparse symmetric matrix (n, n), both
         triangles, an object whose ``solve`` gives the solutions (n, k) of right-hand sides (n, k).
     progress : function of a text, or True, optional
         Is told what takes long, what it will cost, and what costs less; True for lines on standard
@@ -117,8 +118,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
     matrices, interior, static = clamped(fe_model, edge, watch, method, factor)
-    by = "" if factor is None else f", factored by {getattr(factor, '__name__', 'a user function')}"
-    notes = [f"{method} from {matrices[0].shape[0]} DOFs{by}", *edge.notes]
+    notes = [f"{method} from {matrices[0].shape[0]} DOFs, factored by {interior.factored_by}",
+             *edge.notes]
     free = None
     if method in ("craig-bampton", "guyan"):
         if isinstance(modes, Accuracy):

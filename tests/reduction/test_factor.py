@@ -1,6 +1,9 @@
 """Large stiffness matrices, whose pivots are not looked at unless they are suspect."""
 
+import gc
 import re
+import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -70,3 +73,53 @@ def test_a_factor_of_the_user(method):
         reduce(BLOCK, [(mean, "full")], 3, method, factor=lambda m: banded(m * 1.1))
     with pytest.raises(InputError, match="factor ended in AttributeError: .*; give a function"):
         reduce(BLOCK, [(mean, "full")], 3, method, factor=lambda m: m)
+
+
+def test_pardiso_factors_large_matrices_where_it_is_installed(monkeypatch):
+    """A stand-in with the calls of pypardiso: the upper triangle of a definite matrix, by rows."""
+    freed = []
+
+    class PyPardisoSolver:
+        def __init__(self, mtype):
+            assert mtype == 2
+
+        def factorize(self, upper):
+            assert upper.format == "csr" and (upper.tocoo().row <= upper.tocoo().col).all()
+            whole = upper + upper.T
+            whole.setdiag(upper.diagonal())
+            self.matrix = upper
+            self.factor = cho_factor(whole.toarray())
+
+        def solve(self, upper, forces):
+            assert upper is self.matrix and forces.flags.f_contiguous
+            return cho_solve(self.factor, forces)
+
+        def free_memory(self, everything):
+            freed.append(everything)
+    mean = MeanFace(nodes_on_plane(BLOCK, [1, 0, 0], [1, 0, 0]))
+    expected = reduce(BLOCK, [(mean, "full")], 3)
+    assert "DOFs, factored by SuperLU" in expected.summary()
+    monkeypatch.setitem(sys.modules, "pypardiso", SimpleNamespace(PyPardisoSolver=PyPardisoSolver))
+    assert "factored by SuperLU" in reduce(BLOCK, [(mean, "full")], 3).summary()    # it is small
+    monkeypatch.setattr(factor, "_LARGE", 50)
+    body = reduce(BLOCK, [(mean, "full")], 3)
+    assert "DOFs, factored by PARDISO" in body.summary()
+    np.testing.assert_allclose(body.mass, expected.mass, atol=1e-8 * np.abs(expected.mass).max())
+    gc.collect()
+    assert freed == [True]
+    monkeypatch.setitem(sys.modules, "pypardiso", None)         # its import fails
+    assert "factored by SuperLU" in reduce(BLOCK, [(mean, "full")], 3).summary()
+    # without the libraries of MKL, or of a matrix that it does not factor
+    monkeypatch.setitem(sys.modules, "pypardiso",
+                        SimpleNamespace(PyPardisoSolver=lambda mtype: 1 / 0))
+    assert "factored by SuperLU" in reduce(BLOCK, [(mean, "full")], 3).summary()
+
+
+def test_the_real_pardiso_agrees(monkeypatch):
+    pytest.importorskip("pypardiso")
+    mean = MeanFace(nodes_on_plane(BLOCK, [1, 0, 0], [1, 0, 0]))
+    expected = reduce(BLOCK, [(mean, "full")], 3)
+    monkeypatch.setattr(factor, "_LARGE", 50)
+    body = reduce(BLOCK, [(mean, "full")], 3)
+    assert "factored by PARDISO" in body.summary()
+    np.testing.assert_allclose(body.mass, expected.mass, atol=1e-8 * np.abs(expected.mass).max())
