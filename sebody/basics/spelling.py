@@ -1,13 +1,33 @@
 """Names that nothing has: the exception, with those that were perhaps meant."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from difflib import get_close_matches
+from functools import wraps
+from typing import ParamSpec, TypeVar
 
 from sebody.basics.errors import InputError
 from sebody.basics.inputs import shown
 
 MOST = 40           # names that a message lists
+# what textbooks call by a symbol, and the name of the argument
+SYMBOLS = {"E": "youngs_modulus", "nu": "poisson_ratio", "rho": "density",
+           "G": "youngs_modulus and poisson_ratio, of which G = E / (2 (1 + nu))"}
 ALIKE = 0.6         # of two names, so that one may have been meant for the other
+
+
+Arguments = ParamSpec("Arguments")
+Made = TypeVar("Made")
+
+
+def without_symbols(make: Callable[Arguments, Made], what: str = "") -> Callable[Arguments, Made]:
+    """A function that names its arguments where a symbol of theirs is given; see `SYMBOLS`."""
+    @wraps(make)
+    def named(*args: Arguments.args, **given: Arguments.kwargs) -> Made:
+        if symbols := [symbol for symbol in given if symbol in SYMBOLS]:
+            raise InputError(f"{what or make.__name__} has no {'=, '.join(symbols)}=: give "
+                             + ", ".join(SYMBOLS[symbol] for symbol in symbols))
+        return make(*args, **given)
+    return named
 
 
 def unknown(what: str, name: object, known: Iterable[str], have: str = "there are",

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.basics.spelling import without_symbols
 
 Outline = tuple[tuple[float, float], ...]
 Row = tuple[float, ...]
@@ -193,6 +194,9 @@ class Section:
         if isinstance(self.shear_factor, (tuple, list)):
             return tuple(self.shear_factor)
         return self.shear_factor, self.shear_factor
+
+
+Section.__init__ = without_symbols(Section.__init__, "Section")   # type: ignore[method-assign]
 
 
 AnySection = Section | StiffnessSection | Callable[[float], Section | StiffnessSection]

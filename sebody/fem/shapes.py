@@ -11,12 +11,14 @@ import numpy as np
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.basics.spelling import without_symbols
 from sebody.fem import fibres
 from sebody.fem.section import Outline, Section
 
 ROUND = 16              # corners of a circle in pictures
 
 
+@without_symbols
 def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio: float,
               density: float) -> Section:
     """Rectangle; shear factor ``10 (1 + nu) / (12 + 11 nu)`` [Cowper, table 1].
@@ -47,6 +49,7 @@ def rectangle(height: float, width: float, youngs_modulus: float, poisson_ratio:
     return fibres.of_rectangle(section, height, width)
 
 
+@without_symbols
 def circle(radius: float, youngs_modulus: float, poisson_ratio: float, density: float) -> Section:
     """Solid circle; shear factor ``6 (1 + nu) / (7 + 6 nu)`` [Cowper, table 1].
 
@@ -66,6 +69,7 @@ def circle(radius: float, youngs_modulus: float, poisson_ratio: float, density: 
     return tube(radius, radius, youngs_modulus, poisson_ratio, density)
 
 
+@without_symbols
 def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: float,
          density: float) -> Section:
     """Circular tube, solid where `thickness` is `radius`; its torsion constant is I_y + I_z.
@@ -102,6 +106,7 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     return fibres.of_tube(section, radius, inner)
 
 
+@without_symbols
 def i_profile(height: float, width: float, web: float, flange: float, youngs_modulus: float,
               poisson_ratio: float, density: float) -> Section:
     """I with its web along the section's y axis, of thin walls.

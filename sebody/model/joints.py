@@ -18,7 +18,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.model.arguments import along, axes, chosen_name, dof_block, known, turning_axes
 from sebody.model.mechanism import Mechanism
-from sebody.model.pairs import NEAR, check_together, pair
+from sebody.model.pairs import NEAR, check_together, on_ground, pair
 from sebody.model.parts import (
     Attachment,
     Axes,
@@ -44,15 +44,21 @@ class Equations(NamedTuple):
 def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
     """Fix a node's position, rotation or both: fixed DOF blocks are no unknowns.
 
+    Parameters
+    ----------
+    what : {'both', 'position', 'rotation'}
+        ``'translation'``, as nodes keep it, is the position.
+
     Raises
     ------
     InputError
         The position is a dependent one, at the end of a rigid link.
     """
     node = known(model, node)
-    if not isinstance(what, str) or what not in ("position", "rotation", "both"):
+    if not isinstance(what, str) or what not in ("position", "translation", "rotation", "both"):
         raise InputError(f"cannot fix {what!r}: use position, rotation or both")
-    kinds = ("position", "rotation") if what == "both" else (what,)
+    kinds = ("position", "rotation") if what == "both" else (
+        "position" if what == "translation" else what,)
     for kind in kinds:
         dof_block(node, kind)
     for kind in kinds:
@@ -74,7 +80,7 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
     equations = _together(model, a, b, to, what, explicit)
     shared = () if equations else ("position",)
     if vectors:
-        grounded = to is None and not explicit
+        grounded = on_ground(model, to) and not explicit
         equations.append(_parallel(a, None if grounded else b, vectors))
     return _joint(model, what, name, a, b, equations, Axes.of(a, vectors), shared)
 
@@ -181,11 +187,11 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
     equations = _together(model, a, b, to, "weld", explicit)
     shared: tuple[str, ...] = () if equations else ("position",)
     one, other = dof_block(a, "rotation"), dof_block(b, "rotation")
-    if explicit or not (to is None or can_share(one, other)):
+    if explicit or not (on_ground(model, to) or can_share(one, other)):
         equations += _turn_together(model, a, b)
     else:
         shared += ("rotation",)
-        if to is None:
+        if on_ground(model, to):
             one.fixed = True
         else:
             share(model, other, one, "rotation")
@@ -228,7 +234,7 @@ def _together(model: Mechanism, a: Node, b: Node, to: Node | str | None, what: s
     if explicit and one is other:
         raise InputError(f"{what}: nodes {a.name!r} and {b.name!r} share their position "
                          "already: leave the joint out")
-    if to is None:
+    if on_ground(model, to):
         if explicit or one.root is not None:
             return [Equations(model.kind_of("coincident_ground"), positions(a), {"c": a.point},
                               model.dimension)]

@@ -27,6 +27,7 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
     point : (3,), planar (2,)
         Initial position, global axes [length].
     keeps : {'full', 'translation', 'rotation'}
+        ``'position'`` is the translation, as `fix` has it.
     at : Node or str, optional
         Share the position DOF block of this node: a spherical joint with no multiplier.
 
@@ -38,6 +39,7 @@ def node(model: Mechanism, name: str, point: ArrayLike, keeps: str = "full",
     _check_new(model, name)
     at = None if at is None else known(model, at)
     point = vector(model, point, f"point of node {name!r}")
+    keeps = "translation" if isinstance(keeps, str) and keeps == "position" else keeps
     if not isinstance(keeps, str) or keeps not in ("full", "translation", "rotation"):
         raise InputError(f"node {name!r} keeps {keeps!r}: use full, translation or rotation")
     size = max(1.0, np.abs(point).max())

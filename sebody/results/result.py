@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from numpy.typing import NDArray
 
@@ -29,6 +30,13 @@ from sebody.results.static_summary import is_static, static_lines
 from sebody.results.vtk_series import save_vtk
 
 LABELS = 21             # columns of the labels of a summary
+
+# names that other programs have, and what is meant here
+MEANT = {"time": "result.t", "times": "result.t",
+         "plot": 'sebody.results.plot(result, "tip.position")',
+         "animate": 'sebody.results.animate(result, "file.html")',
+         "at": 'result["tip.position"][k] in the state k, of the time result.t[k]',
+         "keys": "result.names()", "quantities": "result.names()"}
 
 
 class Result(Recording):
@@ -75,6 +83,13 @@ class Result(Recording):
                                   beams section_forces (n, ends of elements, 6); see `field`
     ============================  ==================================================================
     """
+
+    if not TYPE_CHECKING:       # for them, a result has the attributes that are written here
+        def __getattr__(self, name):
+            """Refuse what there is not, and say what does what some names ask for."""
+            meant = f": use {MEANT[name]}" if name in MEANT else ""
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{meant}",
+                                 name=name, obj=self)
 
     @property
     def t(self) -> NDArray:
