@@ -51,23 +51,24 @@ def rotation_vector(model: Mechanism, value: ArrayLike, what: str) -> NDArray:
     return np.atleast_1d(numbers)
 
 
-def named_axis(axis: ArrayLike, dimension: int) -> ArrayLike:
+def named_axis(axis: ArrayLike, dimension: int, what: str) -> ArrayLike:
     """The direction that ``"x"``, ``"y"`` or ``"z"`` names, with a sign or not; others as given."""
     sign, letter = (-1.0, axis[1:]) if isinstance(axis, str) and axis[:1] == "-" else (1.0, axis)
     if isinstance(letter, str) and letter in AXES[:dimension]:
         return sign * np.eye(dimension)[AXES.index(letter)] + 0.0      # no -0
     if isinstance(axis, str):
-        raise InputError(f"axis {axis!r} is unknown: give {dimension} numbers, or one of "
-                         f"{', '.join(AXES[:dimension])}, with a minus sign before it or without")
+        raise inputs.refusal(what, axis, f"give {dimension} finite numbers, or "
+                                         f"{' or '.join(AXES[:dimension])}")
     return axis
 
 
 def direction(model: Mechanism, axis: ArrayLike, what: str, node: Node) -> NDArray:
     """Unit vector along an axis."""
-    axis = vector(model, named_axis(axis, model.dimension), f"axis of the {what} at {node.name!r}")
+    name = f"axis of the {what} at {node.name!r}"
+    axis = vector(model, named_axis(axis, model.dimension, name), name)
     largest = np.abs(axis).max()
     if not largest > 0:
-        raise InputError(f"axis of the {what} at {node.name!r} is zero: give its direction")
+        raise InputError(f"{name} is zero: give its direction")
     along: NDArray = axis / largest     # squares of very large or small numbers leave the range
     return along / np.linalg.norm(along)
 
@@ -98,7 +99,8 @@ def turning_axes(model: Mechanism, axis: ArrayLike, what: str, node: Node, signe
     """
     if not model.planar:
         return axes(model, axis, what, node)
-    what, axis = f"axis of the {what} at {node.name!r}", named_axis(axis, 3)
+    what = f"axis of the {what} at {node.name!r}"
+    axis = named_axis(axis, 3, what)
     remedy = "the model is planar, where all rotations are about (0, 0, 1): leave the axis out, "
     other = remedy + "or take a model in space, Model()"
     normal = np.array([0.0, 0.0, 1.0])

@@ -61,10 +61,11 @@ def test_axes_of_planar_models_have_names():
     model = block(planar=True)
     model.revolute("a", axis="z")
     assert block(planar=True).prismatic("a", "y").axis.tolist() == [0, 1]
-    with pytest.raises(InputError, match="axis 'z' is unknown: give 2 numbers, or one of x, y, "):
-        block(planar=True).prismatic("a", "z")
-    with pytest.raises(InputError, match="axis 'w' is unknown: give 3 numbers, or one of x, y, z"):
-        block().revolute("a", "w")
+    for model, build, at, given, remedy in (
+            (block(planar=True), "prismatic", "prismatic joint", "z", "2 finite numbers, or x or y"),
+            (block(), "revolute", "revolute joint", "w", "3 finite numbers, or x or y or z")):
+        with pytest.raises(InputError, match=f"axis of the {at} at 'a' is '{given}': give {remedy}"):
+            getattr(model, build)("a", given)
 
 
 def test_translation_and_position_are_one_word():
