@@ -61,11 +61,12 @@ def test_axes_of_planar_models_have_names():
     model = block(planar=True)
     model.revolute("a", axis="z")
     assert block(planar=True).prismatic("a", "y").axis.tolist() == [0, 1]
-    for model, build, at, given, remedy in (
-            (block(planar=True), "prismatic", "prismatic joint", "z", "2 finite numbers, or x or y"),
-            (block(), "revolute", "revolute joint", "w", "3 finite numbers, or x or y or z")):
-        with pytest.raises(InputError, match=f"axis of the {at} at 'a' is '{given}': give {remedy}"):
-            getattr(model, build)("a", given)
+    for model, kind, given, remedy in (
+            (block(planar=True), "prismatic", "z", "2 finite numbers, or x or y"),
+            (block(), "revolute", "w", "3 finite numbers, or x or y or z")):
+        said = f"axis of the {kind} joint at 'a' is '{given}': give {remedy}"
+        with pytest.raises(InputError, match=said):
+            getattr(model, kind)("a", given)
 
 
 def test_translation_and_position_are_one_word():
