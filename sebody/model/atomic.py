@@ -3,10 +3,23 @@
 from collections.abc import Callable
 from copy import copy
 from functools import wraps
+from inspect import isfunction
 from typing import ParamSpec, TypeVar
 
 Arguments = ParamSpec("Arguments")
 Built = TypeVar("Built")
+Class = TypeVar("Class", bound=type)
+
+
+def atomic_builders(model: Class) -> Class:
+    """A class whose methods that are functions of other modules are `atomic`.
+
+    In its text they are these functions themselves, so that editors show their signatures.
+    """
+    for name, build in list(vars(model).items()):
+        if isfunction(build) and build.__module__ != model.__module__:
+            setattr(model, name, atomic(build))
+    return model
 
 
 def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:

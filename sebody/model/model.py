@@ -24,11 +24,12 @@ from sebody.model import (
     series,
     springs,
 )
-from sebody.model.atomic import atomic
+from sebody.model.atomic import atomic_builders
 from sebody.model.mechanism import Mechanism
 from sebody.model.summary import described, model_tables, summary
 
 
+@atomic_builders
 class Model(Mechanism):
     """A mechanism: nodes, superelements, rigid bodies, joints and forces.
 
@@ -60,50 +61,50 @@ class Model(Mechanism):
             f"<details><summary>{escape(title)}</summary>{rows}</details>"
             for title, rows in model_tables(self))
 
-    node = atomic(nodes.node)
-    attach = atomic(nodes.attach)
-    initial_velocity = atomic(nodes.initial_velocity)
-    rigid_velocity = atomic(nodes.rigid_velocity)
+    node = nodes.node
+    attach = nodes.attach
+    initial_velocity = nodes.initial_velocity
+    rigid_velocity = nodes.rigid_velocity
 
-    superelement = atomic(bodies.superelement)
-    foundation = atomic(foundations.foundation)
-    rigid_body = atomic(bodies.rigid_body)
-    point_mass = atomic(bodies.point_mass)
-    beam = atomic(beams.beam)
+    superelement = bodies.superelement
+    foundation = foundations.foundation
+    rigid_body = bodies.rigid_body
+    point_mass = bodies.point_mass
+    beam = beams.beam
 
-    fix = atomic(joints.fix)
-    revolute = atomic(joints.revolute)
-    universal = atomic(joints.universal)
-    cylindrical = atomic(joints.cylindrical)
-    prismatic = atomic(joints.prismatic)
-    slider = atomic(joints.slider)
-    planar_joint = atomic(joints.planar_joint)
-    spherical = atomic(joints.spherical)
-    weld = atomic(joints.weld)
-    distance = atomic(joints.distance)
+    fix = joints.fix
+    revolute = joints.revolute
+    universal = joints.universal
+    cylindrical = joints.cylindrical
+    prismatic = joints.prismatic
+    slider = joints.slider
+    planar_joint = joints.planar_joint
+    spherical = joints.spherical
+    weld = joints.weld
+    distance = joints.distance
 
-    drive_angle = atomic(drives.drive_angle)
-    drive_slide = atomic(drives.drive_slide)
-    move = atomic(drives.move)
+    drive_angle = drives.drive_angle
+    drive_slide = drives.drive_slide
+    move = drives.move
 
-    force = atomic(loads.force)
-    torque = atomic(loads.torque)
-    mode_force = atomic(loads.mode_force)
-    body_load = atomic(loads.body_load)
-    body_series = atomic(series.body_series)
-    beam_series = atomic(series.beam_series)
-    user_force = atomic(loads.user_force)
-    gravity = atomic(loads.gravity)
+    force = loads.force
+    torque = loads.torque
+    mode_force = loads.mode_force
+    body_load = loads.body_load
+    body_series = series.body_series
+    beam_series = series.beam_series
+    user_force = loads.user_force
+    gravity = loads.gravity
 
-    actuator = atomic(actuators.actuator)
-    sensor = atomic(sensors.sensor)
-    controller = atomic(controllers.controller)
+    actuator = actuators.actuator
+    sensor = sensors.sensor
+    controller = controllers.controller
 
-    spring = atomic(springs.spring)
-    torsion_spring = atomic(springs.torsion_spring)
-    bushing = atomic(springs.bushing)
+    spring = springs.spring
+    torsion_spring = springs.torsion_spring
+    bushing = springs.bushing
 
-    friction = atomic(frictions.friction)
-    stop = atomic(contacts.stop)
-    gear = atomic(gears.gear)
-    contact = atomic(contacts.contact)
+    friction = frictions.friction
+    stop = contacts.stop
+    gear = gears.gear
+    contact = contacts.contact
