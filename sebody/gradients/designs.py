@@ -117,6 +117,8 @@ def sections(model: Model, beam: str, values: ArrayLike,
         known = ", ".join(repr(one.name) for one in model.beams) or "no beams"
         raise InputError(f"sections: there is no beam {beam!r}; the model has {known}: give a beam "
                          "that was built by model.beam, or a Design of any body")
+    inputs.function(section, "sections: section", "give a function of the numbers, such as "
+                                                  "lambda x: rectangle(x[0], 0.02, E, nu, rho)")
     one = found[0]
     held = None
     if inputs.flag(held_modes, "held_modes"):

@@ -72,6 +72,9 @@ def test_wrong_designs():
     m = rod(0.03)
     with pytest.raises(InputError, match="no beam 'bar'.*'rod'"):
         sections(m, "bar", 0.03, lambda x: rectangle(x, 0.02, *MATERIAL))
+    with pytest.raises(InputError, match="sections: section is Section.*: give a function of the "
+                                         "numbers, such as lambda x: rectangle"):
+        sections(m, "rod", 0.03, rectangle(0.03, 0.02, *MATERIAL))
     with pytest.raises(InputError, match="no superelement 'bar'.*rod"):
         gradient(m, 0.005, 0.05, {"b": final("b.position")},
                  [Design("d", [1.0], ["bar"], lambda x: [m.bodies["rod"].reduced])])

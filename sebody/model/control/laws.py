@@ -109,7 +109,11 @@ def state_feedback(gain: ArrayLike, reference: ArrayLike | None = None,
     offset : (m,), optional
         Outputs there, zeros by default.
     """
-    K = inputs.array(np.atleast_2d(gain), "state_feedback: gain", (None, None))
+    what, remedy = "state_feedback: gain", "give a row for each output, with a gain for each input"
+    K = np.atleast_2d(inputs.reals(gain, what, remedy))
+    if not K.size:
+        raise inputs.refusal(what, gain, remedy)
+    K = inputs.array(K, what, (None, None), remedy=remedy)
     m, n = K.shape
     r = np.zeros(n) if reference is None else inputs.vector(reference, "state_feedback: reference",
                                                             n)
@@ -174,9 +178,13 @@ def computed_torque(dynamics: Callable[..., None], reference: Callable[..., None
         Gains [1/time^2], [1/time].
     """
     n = inputs.integer(joints, "computed_torque: joints", least=1)
-    gains = [np.broadcast_to(inputs.reals(value, f"computed_torque: {name}",
-                                          f"give a number or {n}"), n)
-             for name, value in (("kp", kp), ("kd", kd))]
+    gains = []
+    for name, value in (("kp", kp), ("kd", kd)):
+        what, remedy = f"computed_torque: {name}", f"give a number, or {n}, one for each joint"
+        own = inputs.reals(value, what, remedy)
+        if own.shape not in ((), (1,), (n,)) or not np.isfinite(own).all():
+            raise inputs.refusal(what, value, remedy)
+        gains.append(np.broadcast_to(own, n))
     for what, one in (("dynamics", dynamics), ("reference", reference)):
         inputs.function(one, f"computed_torque: {what}", "give a function")
 

@@ -6,7 +6,7 @@ from controlled_rotor import PERIOD, controlled, rotor
 
 from sebody import InputError, Simulation, SimulationError
 from sebody.basics.errors import LimitWarning
-from sebody.control import pid, state_feedback
+from sebody.control import computed_torque, pid, state_feedback
 
 
 def test_a_model_shows_its_loop():
@@ -118,3 +118,21 @@ def test_what_is_refused():
             ({"node": "hub", "direction": (1.0, 0.0), "inertia": 1.0}, "no rotor turns with")):
         with pytest.raises(InputError, match=message):
             rotor().actuator("a", **given)
+
+
+def _arm(*arguments):
+    """Two functions of an arm that is never run."""
+
+
+@pytest.mark.parametrize("make, message", [
+    (lambda: state_feedback([[1.0], [1.0, 2.0]]), "state_feedback: gain is .*: give a row for each "
+                                                  "output, with a gain for each input"),
+    (lambda: state_feedback([]), r"state_feedback: gain is \[\]: give a row for each output"),
+    (lambda: state_feedback([[np.nan]]), "state_feedback: gain has the entry nan"),
+    (lambda: computed_torque(_arm, _arm, 2, [1.0, 2.0, 3.0], 1.0),
+     r"computed_torque: kp is \[1.0, 2.0, 3.0\]: give a number, or 2, one for each joint"),
+    (lambda: computed_torque(_arm, _arm, 2, 1.0, [[1.0], [2.0]]), "computed_torque: kd is .*or 2"),
+    (lambda: computed_torque(_arm, _arm, 2, np.inf, 1.0), "computed_torque: kp is inf: give a")])
+def test_gains_that_fit_no_law(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
