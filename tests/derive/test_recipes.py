@@ -60,7 +60,7 @@ def test_inertia_option(original, tmp_path):
 def test_quantity(original, tmp_path):
     """One formula and one row, for every reader."""
     tree = followed(original, tmp_path, "A quantity")
-    run_tests(tree, "tests/quantities/test_intake.py")
+    run_tests(tree, "tests/quantities/test_outward.py")
 
 
 def test_file_source(original, tmp_path):
