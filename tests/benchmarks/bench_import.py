@@ -3,10 +3,10 @@
     python tests/benchmarks/bench_import.py [--json] [--sizes 4.2 3 2.4] [--before PYTHON]
 
 Needs gmsh and ccx. Each size of element is meshed once; ``ccx`` writes the matrices, then computes
-twenty frequencies of the free part, and ``import_body`` makes a body with two rigid holes and
-twenty modes, each in a process of its own with one BLAS thread. PYTHON is the interpreter of
-another version, which imports the same files in turn. Seconds are those of the processor, user and
-system.
+twenty frequencies of the free part, and of that with rigid holes; ``import_body`` makes a body with
+two rigid holes and twenty modes, each in a process of its own with one BLAS thread. PYTHON is the
+interpreter of another version, which imports the same files in turn. Seconds are those of the
+processor, user and system.
 """
 
 import argparse
@@ -71,6 +71,21 @@ def mesh(size: float, folder: Path) -> Path:
     return deck
 
 
+def with_rigid_holes(text: str) -> str:
+    """The deck with both holes tied to nodes on their axes by ``*RIGID BODY``."""
+    rows = [line.split(",") for line in text.partition("*ELEMENT")[0].splitlines()[1:]]
+    places = {int(label): [float(x) for x in place] for label, *place in rows}
+    cards, last = [], max(places)
+    for k, (x, radius) in enumerate(((0, 22), (160, 11))):
+        own = [label for label, (a, b, _) in places.items()
+               if abs(np.hypot(a - x, b) - radius) < 1e-3]
+        place, turn = last + 2 * k + 1, last + 2 * k + 2
+        cards += [f"*NODE\n{place}, {x}, 0, 0\n{turn}, {x}, 0, 0", f"*NSET, NSET=HOLE{k}",
+                  ",\n".join(map(str, own)),
+                  f"*RIGID BODY, NSET=HOLE{k}, REF NODE={place}, ROT NODE={turn}"]
+    return text.replace("*STEP", "\n".join([*cards, "*STEP"]))
+
+
 def measured(command: list[str], folder: Path) -> dict[str, float]:
     """Processor seconds and peak megabytes of a process."""
     child = subprocess.Popen(command, cwd=folder, env={**os.environ, **ONE},
@@ -93,9 +108,12 @@ def row(size: float, before: Path | None) -> dict:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         text = mesh(size, folder).read_text()
-        for job, step in (("se", "*FREQUENCY, SOLVER=MATRIXSTORAGE"), ("fr", "*FREQUENCY\n26")):
-            (folder / f"{job}.inp").write_text(text + step + "\n*END STEP\n")
-        measured(["ccx", "-i", "se"], folder)
+        for job, deck, step in (("se", text, "*FREQUENCY, SOLVER=MATRIXSTORAGE"),
+                                ("fr", text, "*FREQUENCY\n26"),
+                                ("rb", with_rigid_holes(text), "*FREQUENCY\n26")):
+            (folder / f"{job}.inp").write_text(deck + step + "\n*END STEP\n")
+        for job in ("se", "rb"):
+            measured(["ccx", "-i", job], folder)
         result = {"size": size, "rows": len((folder / "se.dof").read_text().splitlines()),
                   "ccx": measured(["ccx", "-i", "fr"], folder)}
         versions = {"before": str(before)} if before else {}
@@ -109,12 +127,14 @@ def row(size: float, before: Path | None) -> dict:
         free = free_frequencies(model, 10)
         result["free part off ccx"] = float(np.abs(free / own[:10] - 1).max())
         means = {key: f"rbe3:{value}" for key, value in HOLES.items()}
-        for kind, faces in (("rbe2", HOLES), ("rbe3", means)):
-            body = import_body(folder / "se.inp", faces, MODES) if kind == "rbe3" else load_body(
-                folder / "import.npz")
-            squares = np.linalg.eigvals(np.linalg.solve(body.mass, body.stiffness)).real
-            hertz = np.sqrt(np.sort(squares)[6:12]) / (2 * np.pi)
-            result[f"{kind} off ccx"] = [float(x) for x in hertz / own[:6] - 1]
+        rigid = frequencies(folder / "rb.dat")
+        for kind, faces, known in (("rbe2", HOLES, rigid), ("rbe3", means, own)):
+            for method in ("craig-bampton", "rubin"):
+                body = import_body(folder / "se.inp", faces, MODES, method=method)
+                squares = np.linalg.eigvals(np.linalg.solve(body.mass, body.stiffness)).real
+                hertz = np.sqrt(np.sort(squares)[6:12]) / (2 * np.pi)
+                result[f"{kind}, {method}, off ccx"] = [float(x) for x in hertz / known[:6] - 1]
+        result["rigid holes stiffen"] = [float(x) for x in np.divide(rigid[:6], own[:6]) - 1]
         if before:
             one, other = (load_body(folder / f"{version}.npz") for version in versions)
             result["differences"] = {
@@ -146,7 +166,7 @@ def main() -> None:
             f"{key} {value['seconds']:.1f} s {value['megabytes']:.0f} MB"
             for key, value in one.items() if isinstance(value, dict) and "seconds" in value))
         for key, value in one.items():
-            if "off" in key or key == "differences":
+            if "off" in key or key in ("differences", "rigid holes stiffen"):
                 print(f"  {key}: {value}")
 
 
