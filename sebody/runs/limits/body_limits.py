@@ -39,8 +39,9 @@ def limits_of(bodies: Iterable[Superelement]) -> dict[str, Limits]:
     for body in bodies:
         key = body.reduced, body.frame, body.inertia, body.stiffening, tuple(body.alpha_r)
         if key not in known:
+            crooked = mass_off_line(body.reduced)
             known[key] = Limits(np.inf if body.stiffening else FAST * cautious_limit(body),
-                                mass_off_line(body.reduced), _off_line(body), Axial.of(body))
+                                crooked, crooked and _follows_rotations(body), Axial.of(body))
         limits[body.name] = known[key]
     return limits
 
@@ -113,10 +114,9 @@ def between_nodes(psi: NDArray) -> NDArray:
     return np.linalg.norm(psi - chosen, axis=3).max(axis=2)
 
 
-def _off_line(body: Superelement) -> bool:
-    """Whether a body of option C has its frame on rotations, and its mass off the nodes' line."""
-    on_rotations = FRAMES[body.frame].traits.needs_rotations
-    return body.inertia == "floating_field" and on_rotations and mass_off_line(body.reduced)
+def _follows_rotations(body: Superelement) -> bool:
+    """Whether a body of option C has its frame on rotations."""
+    return body.inertia == "floating_field" and FRAMES[body.frame].traits.needs_rotations
 
 
 def _too_fast(body: Superelement, spin: NDArray, speed: float) -> Iterator[Finding]:
