@@ -217,7 +217,7 @@ REDUCTION = {
         "stiffness": np.eye(7), "mass": np.eye(7), "coordinates": [X], "keeps": ("full",),
         "modes": 1, "damping": np.eye(7), "base": Y, "coupling": np.zeros((7, 6)),
         "rigid_mass": np.eye(6), "self_weight_stiffness": np.zeros((7, 7)),
-        "loads": {"wind": np.ones(7)}, "units": "m"}),
+        "loads": {"wind": np.ones(7)}, "units": "m", "outputs": {"OTM": np.ones((2, 7))}}),
     "grounded_from_fe": Call(reduction.grounded_from_fe, lambda: {
         "fe_model": beam(), "boundary": [(4, "full")], "base": 0, "modes": 1,
         "gravity": (0.0, 1.0, 0.0), "loads": np.zeros(30)}),
