@@ -31,6 +31,7 @@ CONSTANTS = (
     Part("c", (3,), "damping along each axis"),
     Part("kt", (3,), "stiffness about each axis"),
     Part("ct", (3,), "damping about each axis"),
+    Part("n", (3,), "direction about which b turns freely, or zero"),
     Part("e1", (3,), "direction of an axis, in axes of body a"),
     Part("e2", (3,), "direction of an axis, in axes of body a"),
     Part("e3", (3,), "direction of an axis, in axes of body a"),
@@ -44,8 +45,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (720, 0, 0, 0),
-              "column": (1723, 0, 0, 0)}
+OPERATIONS = {"residual": (1119, 0, 0, 0),
+              "column": (2411, 0, 0, 0)}
 
 
 @kernel_function
@@ -69,15 +70,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ct_x = constant[9]
         ct_y = constant[10]
         ct_z = constant[11]
-        e1_x = constant[12]
-        e1_y = constant[13]
-        e1_z = constant[14]
-        e2_x = constant[15]
-        e2_y = constant[16]
-        e2_z = constant[17]
-        e3_x = constant[18]
-        e3_y = constant[19]
-        e3_z = constant[20]
+        n_x = constant[12]
+        n_y = constant[13]
+        n_z = constant[14]
+        e1_x = constant[15]
+        e1_y = constant[16]
+        e1_z = constant[17]
+        e2_x = constant[18]
+        e2_y = constant[19]
+        e2_z = constant[20]
+        e3_x = constant[21]
+        e3_y = constant[22]
+        e3_z = constant[23]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -173,142 +177,189 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t56 = (0.5)*e1_y*t54 + (0.5)*e1_z*t55
         t57 = (0.5)*e2_y*t54 + (0.5)*e2_z*t55
         t58 = (0.5)*e3_y*t54 + (0.5)*e3_z*t55
-        t59 = Ra_xx*Rb_xx
-        t60 = Ra_yx*Rb_yx
-        t61 = Ra_zx*Rb_zx
+        t59 = Ra_xz*Rb_xx
+        t60 = Ra_yz*Rb_yx
+        t61 = Ra_zz*Rb_zx
         t62 = t59 + t60 + t61
-        t63 = Ra_xx*Rb_xy
-        t64 = Ra_yx*Rb_yy
-        t65 = Ra_zx*Rb_zy
-        t66 = t63 + t64 + t65
-        t67 = Ra_xx*Rb_xz
-        t68 = Ra_yx*Rb_yz
-        t69 = Ra_zx*Rb_zz
-        t70 = t67 + t68 + t69
-        t71 = -Oma_x + Omb_x*t62 + Omb_y*t66 + Omb_z*t70
-        t72 = Ra_xy*Rb_xx
-        t73 = Ra_yy*Rb_yx
-        t74 = Ra_zy*Rb_zx
-        t75 = t72 + t73 + t74
-        t76 = Ra_xy*Rb_xy
-        t77 = Ra_yy*Rb_yy
-        t78 = Ra_zy*Rb_zy
-        t79 = t76 + t77 + t78
-        t80 = Ra_xy*Rb_xz
-        t81 = Ra_yy*Rb_yz
-        t82 = Ra_zy*Rb_zz
-        t83 = t80 + t81 + t82
-        t84 = -Oma_y + Omb_x*t75 + Omb_y*t79 + Omb_z*t83
-        t85 = Ra_xz*Rb_xx
-        t86 = Ra_yz*Rb_yx
-        t87 = Ra_zz*Rb_zx
-        t88 = t85 + t86 + t87
-        t89 = Ra_xz*Rb_xy
-        t90 = Ra_yz*Rb_yy
-        t91 = Ra_zz*Rb_zy
-        t92 = t89 + t90 + t91
-        t93 = Ra_xz*Rb_xz
-        t94 = Ra_yz*Rb_yz
-        t95 = Ra_zz*Rb_zz
-        t96 = t93 + t94 + t95
-        t97 = -Oma_z + Omb_x*t88 + Omb_y*t92 + Omb_z*t96
-        t98 = ct_x*(e1_x*t71 + e1_y*t84 + e1_z*t97)
-        t99 = ct_y*(e2_x*t71 + e2_y*t84 + e2_z*t97)
-        t100 = ct_z*(e3_x*t71 + e3_y*t84 + e3_z*t97)
-        t101 = (0.5)*t72
-        t102 = (0.5)*t73
-        t103 = (0.5)*t74
-        t104 = t101 + t102 + t103
-        t105 = 2*t104
-        t106 = (0.5)*t85
-        t107 = (0.5)*t86
-        t108 = (0.5)*t87
-        t109 = t106 + t107 + t108
-        t110 = 2*t109
-        t111 = (0.5)*t93 + (0.5)*t94 + (0.5)*t95
-        t112 = (0.5)*t76 + (0.5)*t77 + (0.5)*t78
-        t113 = t111 + t112
-        t114 = -2*t113
-        t115 = (0.5)*t89
-        t116 = (0.5)*t90
-        t117 = (0.5)*t91
-        t118 = (0.5)*t80 + (0.5)*t81 + (0.5)*t82
-        t119 = t115 + t116 + t117 - t118
-        t120 = (0.5)*t67 + (0.5)*t68 + (0.5)*t69
-        t121 = -t106 - t107 - t108 + t120
-        t122 = (0.5)*t63 + (0.5)*t64 + (0.5)*t65
-        t123 = t101 + t102 + t103 - t122
-        t124 = (0.5)*kt_x*(e1_x*t119 + e1_y*t121 + e1_z*t123)
-        t125 = (0.5)*kt_y*(e2_x*t119 + e2_y*t121 + e2_z*t123)
-        t126 = (0.5)*kt_z*(e3_x*t119 + e3_y*t121 + e3_z*t123)
-        t127 = 2*t8
-        t128 = -2*t10
-        t129 = (0.5)*e1_x*t128 + (0.5)*e1_z*t127
-        t130 = (0.5)*e2_x*t128 + (0.5)*e2_z*t127
-        t131 = (0.5)*e3_x*t128 + (0.5)*e3_z*t127
-        t132 = 2*t122
-        t133 = t115 + t116 + t117
-        t134 = 2*t133
-        t135 = (0.5)*t59 + (0.5)*t60 + (0.5)*t61
-        t136 = t111 + t135
-        t137 = -2*t136
-        t138 = 2*t9
-        t139 = -2*t8
-        t140 = (0.5)*e1_x*t138 + (0.5)*e1_y*t139
-        t141 = (0.5)*e2_x*t138 + (0.5)*e2_y*t139
-        t142 = (0.5)*e3_x*t138 + (0.5)*e3_y*t139
-        t143 = 2*t120
-        t144 = 2*t118
-        t145 = t112 + t135
-        t146 = -2*t145
-        t147 = -2*t122
-        t148 = -2*t120
-        t149 = 2*t113
-        t150 = 2*t62
-        t151 = 2*t75
-        t152 = 2*t88
-        t153 = (0.5)*t98
-        t154 = (0.5)*t99
-        t155 = (0.5)*t100
-        t156 = -2*t104
-        t157 = -2*t118
-        t158 = 2*t136
-        t159 = 2*t66
-        t160 = 2*t79
-        t161 = 2*t92
-        t162 = -2*t109
-        t163 = -2*t133
-        t164 = 2*t145
-        t165 = 2*t70
-        t166 = 2*t83
-        t167 = 2*t96
+        t63 = n_x*n_x
+        t64 = n_y*n_y
+        t65 = n_z*n_z
+        t66 = t64 + t65 - 1
+        t67 = -t63 - t66
+        t68 = t62*t67
+        t69 = Ra_xz*Rb_xy
+        t70 = Ra_yz*Rb_yy
+        t71 = Ra_zz*Rb_zy
+        t72 = t69 + t70 + t71
+        t73 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+        t74 = n_z*t73
+        t75 = n_x*t62 + n_y*t72 + t74
+        t76 = n_x*t75
+        t77 = t68 + 2*t76
+        t78 = Ra_xy*Rb_xx
+        t79 = Ra_yy*Rb_yx
+        t80 = Ra_zy*Rb_zx
+        t81 = t78 + t79 + t80
+        t82 = -t81
+        t83 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+        t84 = -t83
+        t85 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+        t86 = -t85
+        t87 = n_x*t82 + n_y*t84 + n_z*t86
+        t88 = -2*n_x*t87 + t67*t81
+        t89 = -n_z*t75
+        t90 = t73 + t83
+        t91 = (0.5)*t67
+        t92 = 2*n_y*t87 + 2*t89 - 2*t90*t91
+        t93 = n_y*t83
+        t94 = n_x*t81 + n_z*t85 + t93
+        t95 = n_z*t94
+        t96 = -t95
+        t97 = n_y*t75 + t91*(t69 + t70 + t71 - t85) + t96
+        t98 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+        t99 = n_x*t98
+        t100 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+        t101 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+        t102 = n_y*t100 + n_z*t101 + t99
+        t103 = -t76
+        t104 = n_z*t102 + t103 + t91*(t101 - t59 - t60 - t61)
+        t105 = n_y*t102
+        t106 = -t105
+        t107 = n_x*t94 + t106 + t91*(-t100 + t78 + t79 + t80)
+        t108 = (0.5)*kt_x*(e1_x*t97 + e1_y*t104 + e1_z*t107)
+        t109 = (0.5)*kt_y*(e2_x*t97 + e2_y*t104 + e2_z*t107)
+        t110 = (0.5)*kt_z*(e3_x*t97 + e3_y*t104 + e3_z*t107)
+        t111 = n_x*n_z
+        t112 = -2*t103 - 2*t111
+        t113 = n_x*n_y
+        t114 = -t94
+        t115 = -2*n_x*t114 - 2*t113
+        t116 = 2*n_y*t114 + 2*t66 + 2*t89
+        t117 = -Oma_x + Omb_x*t98 + Omb_y*t100 + Omb_z*t101
+        t118 = -Oma_y + Omb_x*t81 + Omb_y*t83 + Omb_z*t85
+        t119 = -Oma_z + Omb_x*t62 + Omb_y*t72 + Omb_z*t73
+        t120 = n_x*t117 + n_y*t118 + n_z*t119
+        t121 = -t102*t118 + t117*t94
+        t122 = t102*t119 - t117*t75
+        t123 = n_x*t120 + n_y*t121 - n_z*t122 + t117*t67
+        t124 = t118*t75 - t119*t94
+        t125 = -n_x*t121 + n_y*t120 + n_z*t124 + t118*t67
+        t126 = n_x*t122 - n_y*t124 + n_z*t120 + t119*t67
+        t127 = (0.5)*ct_x*(e1_x*t123 + e1_y*t125 + e1_z*t126)
+        t128 = (0.5)*ct_y*(e2_x*t123 + e2_y*t125 + e2_z*t126)
+        t129 = (0.5)*ct_z*(e3_x*t123 + e3_y*t125 + e3_z*t126)
+        t130 = 2*t8
+        t131 = -2*t10
+        t132 = (0.5)*e1_x*t131 + (0.5)*e1_z*t130
+        t133 = (0.5)*e2_x*t131 + (0.5)*e2_z*t130
+        t134 = (0.5)*e3_x*t131 + (0.5)*e3_z*t130
+        t135 = t100*t67
+        t136 = 2*t105 + t135
+        t137 = -t62
+        t138 = -t72
+        t139 = -t73
+        t140 = n_x*t137 + n_y*t138 + n_z*t139
+        t141 = -2*n_y*t140 + t67*t72
+        t142 = -n_x*t102
+        t143 = t73 + t98
+        t144 = 2*n_z*t140 + 2*t142 - 2*t143*t91
+        t145 = -2*t106 - 2*t113
+        t146 = n_y*n_z
+        t147 = -t75
+        t148 = -2*n_y*t147 - 2*t146
+        t149 = t63 - 1
+        t150 = 2*n_z*t147 + 2*t142 + 2*t149 + 2*t65
+        t151 = 2*t9
+        t152 = -2*t8
+        t153 = (0.5)*e1_x*t151 + (0.5)*e1_y*t152
+        t154 = (0.5)*e2_x*t151 + (0.5)*e2_y*t152
+        t155 = (0.5)*e3_x*t151 + (0.5)*e3_y*t152
+        t156 = t67*t85
+        t157 = t156 + 2*t95
+        t158 = -t98
+        t159 = -t100
+        t160 = -t101
+        t161 = n_x*t158 + n_y*t159 + n_z*t160
+        t162 = -2*n_z*t161 + t101*t67
+        t163 = -n_y*t94
+        t164 = t83 + t98
+        t165 = 2*n_x*t161 + 2*t163 - 2*t164*t91
+        t166 = -2*t146 - 2*t96
+        t167 = -t102
+        t168 = -2*n_z*t167 - 2*t111
+        t169 = 2*n_x*t167 + 2*t149 + 2*t163 + 2*t64
+        t170 = n_y*t101 + n_z*t159
+        t171 = n_y*t73 + n_z*t138
+        t172 = -2*n_x*t171 + 2*n_z*t170 + 2*t159*t91
+        t173 = n_y*t85
+        t174 = n_z*t84 + t173
+        t175 = 2*n_x*t174 - 2*n_y*t170 + 2*t160*t91
+        t176 = 2*n_y*t171 - 2*n_z*t174 + 2*t90*t91
+        t177 = n_z*t62
+        t178 = n_y*t81 + t177 + t99
+        t179 = t102*t82 + t94*t98
+        t180 = t102*t62 + t158*t75
+        t181 = 2*n_x*t178 + 2*n_y*t179 - 2*n_z*t180 + 2*t67*t98
+        t182 = t137*t94 + t75*t81
+        t183 = -2*n_x*t179 + 2*n_y*t178 + 2*n_z*t182 + 2*t67*t81
+        t184 = 2*n_x*t180 - 2*n_y*t182 + 2*n_z*t178 + 2*t68
+        t185 = n_x*t139 + t177
+        t186 = n_x*t86 + n_z*t81
+        t187 = 2*n_y*t185 - 2*n_z*t186 + 2*t82*t91
+        t188 = n_x*t160 + n_z*t98
+        t189 = 2*n_x*t186 - 2*n_y*t188 + 2*t86*t91
+        t190 = -2*n_x*t185 + 2*n_z*t188 + 2*t143*t91
+        t191 = n_x*t100
+        t192 = n_z*t72 + t191 + t93
+        t193 = t100*t94 + t102*t84
+        t194 = t102*t72 + t159*t75
+        t195 = 2*n_x*t192 + 2*n_y*t193 - 2*n_z*t194 + 2*t135
+        t196 = t138*t94 + t75*t83
+        t197 = -2*n_x*t193 + 2*n_y*t192 + 2*n_z*t196 + 2*t67*t83
+        t198 = 2*n_x*t194 - 2*n_y*t196 + 2*n_z*t192 + 2*t67*t72
+        t199 = n_x*t72 + n_y*t137
+        t200 = n_x*t83 + n_y*t82
+        t201 = 2*n_y*t199 - 2*n_z*t200 + 2*t137*t91
+        t202 = n_y*t158 + t191
+        t203 = -2*n_x*t199 + 2*n_z*t202 + 2*t138*t91
+        t204 = 2*n_x*t200 - 2*n_y*t202 + 2*t164*t91
+        t205 = n_x*t101 + t173 + t74
+        t206 = t101*t94 + t102*t86
+        t207 = t102*t73 + t160*t75
+        t208 = 2*n_x*t205 + 2*n_y*t206 - 2*n_z*t207 + 2*t101*t67
+        t209 = t139*t94 + t75*t85
+        t210 = -2*n_x*t206 + 2*n_y*t205 + 2*n_z*t209 + 2*t156
+        t211 = 2*n_x*t207 - 2*n_y*t209 + 2*n_z*t205 + 2*t67*t73
         g[0] = t11*t4 + t13*t14 + t13*t25 + t16*t17 + t16*t26 + t24*t4
         g[1] = t11*t31 + t14*t33 + t17*t35 + t24*t31 + t25*t33 + t26*t35
         g[2] = t11*t40 + t14*t42 + t17*t44 + t24*t40 + t25*t42 + t26*t44
         g[3] = t11*t45 + t14*t46 + t17*t47 + t24*t45 + t25*t46 + t26*t47
         g[4] = t11*t48 + t14*t49 + t17*t50 + t24*t48 + t25*t49 + t26*t50
         g[5] = t11*t51 + t14*t52 + t17*t53 + t24*t51 + t25*t52 + t26*t53
-        g[6] = (-e1_x*t98 - e2_x*t99 - e3_x*t100 + t11*t56 + t124*(e1_x*t114 + e1_y*t105 +
-            e1_z*t110) + t125*(e2_x*t114 + e2_y*t105 + e2_z*t110) + t126*(e3_x*t114 + e3_y*t105 +
-            e3_z*t110) + t14*t57 + t17*t58 + t24*t56 + t25*t57 + t26*t58)
-        g[7] = (-e1_y*t98 - e2_y*t99 - e3_y*t100 + t11*t129 + t124*(e1_x*t132 + e1_y*t137 +
-            e1_z*t134) + t125*(e2_x*t132 + e2_y*t137 + e2_z*t134) + t126*(e3_x*t132 + e3_y*t137 +
-            e3_z*t134) + t129*t24 + t130*t14 + t130*t25 + t131*t17 + t131*t26)
-        g[8] = (-e1_z*t98 - e2_z*t99 - e3_z*t100 + t11*t140 + t124*(e1_x*t143 + e1_y*t144 +
-            e1_z*t146) + t125*(e2_x*t143 + e2_y*t144 + e2_z*t146) + t126*(e3_x*t143 + e3_y*t144 +
-            e3_z*t146) + t14*t141 + t140*t24 + t141*t25 + t142*t17 + t142*t26)
-        g[9] = (t124*(e1_x*t149 + e1_y*t147 + e1_z*t148) + t125*(e2_x*t149 + e2_y*t147 +
-            e2_z*t148) + t126*(e3_x*t149 + e3_y*t147 + e3_z*t148) + t153*(e1_x*t150 + e1_y*t151 +
-            e1_z*t152) + t154*(e2_x*t150 + e2_y*t151 + e2_z*t152) + t155*(e3_x*t150 + e3_y*t151 +
-            e3_z*t152))
-        g[10] = (t124*(e1_x*t156 + e1_y*t158 + e1_z*t157) + t125*(e2_x*t156 + e2_y*t158 +
-            e2_z*t157) + t126*(e3_x*t156 + e3_y*t158 + e3_z*t157) + t153*(e1_x*t159 + e1_y*t160 +
-            e1_z*t161) + t154*(e2_x*t159 + e2_y*t160 + e2_z*t161) + t155*(e3_x*t159 + e3_y*t160 +
-            e3_z*t161))
-        g[11] = (t124*(e1_x*t162 + e1_y*t163 + e1_z*t164) + t125*(e2_x*t162 + e2_y*t163 +
-            e2_z*t164) + t126*(e3_x*t162 + e3_y*t163 + e3_z*t164) + t153*(e1_x*t165 + e1_y*t166 +
-            e1_z*t167) + t154*(e2_x*t165 + e2_y*t166 + e2_z*t167) + t155*(e3_x*t165 + e3_y*t166 +
-            e3_z*t167))
+        g[6] = (t108*(e1_x*t92 + e1_y*t88 + e1_z*t77) + t109*(e2_x*t92 + e2_y*t88 + e2_z*t77) +
+            t11*t56 + t110*(e3_x*t92 + e3_y*t88 + e3_z*t77) + t127*(e1_x*t116 + e1_y*t115 +
+            e1_z*t112) + t128*(e2_x*t116 + e2_y*t115 + e2_z*t112) + t129*(e3_x*t116 + e3_y*t115 +
+            e3_z*t112) + t14*t57 + t17*t58 + t24*t56 + t25*t57 + t26*t58)
+        g[7] = (t108*(e1_x*t136 + e1_y*t144 + e1_z*t141) + t109*(e2_x*t136 + e2_y*t144 +
+            e2_z*t141) + t11*t132 + t110*(e3_x*t136 + e3_y*t144 + e3_z*t141) + t127*(e1_x*t145 +
+            e1_y*t150 + e1_z*t148) + t128*(e2_x*t145 + e2_y*t150 + e2_z*t148) + t129*(e3_x*t145 +
+            e3_y*t150 + e3_z*t148) + t132*t24 + t133*t14 + t133*t25 + t134*t17 + t134*t26)
+        g[8] = (t108*(e1_x*t162 + e1_y*t157 + e1_z*t165) + t109*(e2_x*t162 + e2_y*t157 +
+            e2_z*t165) + t11*t153 + t110*(e3_x*t162 + e3_y*t157 + e3_z*t165) + t127*(e1_x*t168 +
+            e1_y*t166 + e1_z*t169) + t128*(e2_x*t168 + e2_y*t166 + e2_z*t169) + t129*(e3_x*t168 +
+            e3_y*t166 + e3_z*t169) + t14*t154 + t153*t24 + t154*t25 + t155*t17 + t155*t26)
+        g[9] = (t108*(e1_x*t176 + e1_y*t172 + e1_z*t175) + t109*(e2_x*t176 + e2_y*t172 +
+            e2_z*t175) + t110*(e3_x*t176 + e3_y*t172 + e3_z*t175) + t127*(e1_x*t181 + e1_y*t183 +
+            e1_z*t184) + t128*(e2_x*t181 + e2_y*t183 + e2_z*t184) + t129*(e3_x*t181 + e3_y*t183 +
+            e3_z*t184))
+        g[10] = (t108*(e1_x*t187 + e1_y*t190 + e1_z*t189) + t109*(e2_x*t187 + e2_y*t190 +
+            e2_z*t189) + t110*(e3_x*t187 + e3_y*t190 + e3_z*t189) + t127*(e1_x*t195 + e1_y*t197 +
+            e1_z*t198) + t128*(e2_x*t195 + e2_y*t197 + e2_z*t198) + t129*(e3_x*t195 + e3_y*t197 +
+            e3_z*t198))
+        g[11] = (t108*(e1_x*t201 + e1_y*t203 + e1_z*t204) + t109*(e2_x*t201 + e2_y*t203 +
+            e2_z*t204) + t110*(e3_x*t201 + e3_y*t203 + e3_z*t204) + t127*(e1_x*t208 + e1_y*t210 +
+            e1_z*t211) + t128*(e2_x*t208 + e2_y*t210 + e2_z*t211) + t129*(e3_x*t208 + e3_y*t210 +
+            e3_z*t211))
         if task == ENERGY:
             t900 = -xa_x + xb_x
             t901 = -xa_y + xb_y
@@ -316,104 +367,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t903 = Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902
             t904 = Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902
             t905 = Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902
-            t906 = (0.5)*Rb_xz
-            t907 = (0.5)*Rb_yz
-            t908 = (0.5)*Rb_zz
-            t909 = (-Ra_xy*t906 + (0.5)*Ra_xz*Rb_xy - Ra_yy*t907 + (0.5)*Ra_yz*Rb_yy - Ra_zy*t908
-                + (0.5)*Ra_zz*Rb_zy)
-            t910 = (Ra_xx*t906 - 0.5*Ra_xz*Rb_xx + Ra_yx*t907 - 0.5*Ra_yz*Rb_yx + Ra_zx*t908 -
-                0.5*Ra_zz*Rb_zx)
-            t911 = (-0.5*Ra_xx*Rb_xy + (0.5)*Ra_xy*Rb_xx - 0.5*Ra_yx*Rb_yy + (0.5)*Ra_yy*Rb_yx -
-                0.5*Ra_zx*Rb_zy + (0.5)*Ra_zy*Rb_zx)
+            t906 = Ra_xz*Rb_xx
+            t907 = Ra_yz*Rb_yx
+            t908 = Ra_zz*Rb_zx
+            t909 = (n_x*(t906 + t907 + t908) + n_y*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy) +
+                n_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
+            t910 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t911 = (n_x*(Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx) + n_y*(Ra_xy*Rb_xy + Ra_yy*Rb_yy
+                + Ra_zy*Rb_zy) + n_z*t910)
+            t912 = -0.5*n_x*n_x - 0.5*n_y*n_y - 0.5*n_z*n_z + 0.5
+            t913 = n_y*t909 - n_z*t911 + t912*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy - t910)
+            t914 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t915 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t916 = n_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + n_y*t914 + n_z*t915
+            t917 = -n_x*t909 + n_z*t916 + t912*(-t906 - t907 - t908 + t915)
+            t918 = n_x*t911 - n_y*t916 + t912*(Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx - t914)
             energies[STRAIN] += ((0.5)*k_x*(e1_x*t903 + e1_y*t904 + e1_z*t905)*(e1_x*t903 +
                 e1_y*t904 + e1_z*t905) + (0.5)*k_y*(e2_x*t903 + e2_y*t904 + e2_z*t905)*(e2_x*t903
                 + e2_y*t904 + e2_z*t905) + (0.5)*k_z*(e3_x*t903 + e3_y*t904 +
-                e3_z*t905)*(e3_x*t903 + e3_y*t904 + e3_z*t905) + (0.5)*kt_x*(e1_x*t909 + e1_y*t910
-                + e1_z*t911)*(e1_x*t909 + e1_y*t910 + e1_z*t911) + (0.5)*kt_y*(e2_x*t909 +
-                e2_y*t910 + e2_z*t911)*(e2_x*t909 + e2_y*t910 + e2_z*t911) + (0.5)*kt_z*(e3_x*t909
-                + e3_y*t910 + e3_z*t911)*(e3_x*t909 + e3_y*t910 + e3_z*t911))
-        if task == ENERGY:
-            t900 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t901 = 2*t900
-            t902 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t903 = 2*t902
-            t904 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t905 = 2*t904
-            t906 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t907 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t908 = -Oma_x + Omb_x*t900 + Omb_y*t906 + Omb_z*t907
-            t909 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t910 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t911 = -Oma_y + Omb_x*t902 + Omb_y*t909 + Omb_z*t910
-            t912 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t913 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t914 = -Oma_z + Omb_x*t904 + Omb_y*t912 + Omb_z*t913
-            t915 = ct_x*(e1_x*t908 + e1_y*t911 + e1_z*t914)
-            t916 = (0.5)*t915
-            t917 = ct_y*(e2_x*t908 + e2_y*t911 + e2_z*t914)
-            t918 = (0.5)*t917
-            t919 = ct_z*(e3_x*t908 + e3_y*t911 + e3_z*t914)
-            t920 = (0.5)*t919
-            t921 = 2*t906
-            t922 = 2*t909
-            t923 = 2*t912
-            t924 = 2*t907
-            t925 = 2*t910
-            t926 = 2*t913
-            t927 = 2*Ra_xx
-            t928 = 2*Ra_xy
-            t929 = 2*Ra_xz
-            t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
-            t931 = -va_x + vb_x
-            t932 = -va_y + vb_y
-            t933 = -va_z + vb_z
-            t934 = -xa_x + xb_x
-            t935 = -xa_y + xb_y
-            t936 = -xa_z + xb_z
-            t937 = Ra_xy*t934 + Ra_yy*t935 + Ra_zy*t936
-            t938 = Ra_xz*t934 + Ra_yz*t935 + Ra_zz*t936
-            t939 = -Oma_y*t938 + Oma_z*t937 + Ra_xx*t931 + Ra_yx*t932 + Ra_zx*t933
-            t940 = Ra_xx*t934 + Ra_yx*t935 + Ra_zx*t936
-            t941 = Oma_x*t938 - Oma_z*t940 + Ra_xy*t931 + Ra_yy*t932 + Ra_zy*t933
-            t942 = -Oma_x*t937 + Oma_y*t940 + Ra_xz*t931 + Ra_yz*t932 + Ra_zz*t933
-            t943 = (0.5)*c_x*(e1_x*t939 + e1_y*t941 + e1_z*t942)
-            t944 = e2_x*t927 + e2_y*t928 + e2_z*t929
-            t945 = (0.5)*c_y*(e2_x*t939 + e2_y*t941 + e2_z*t942)
-            t946 = e3_x*t927 + e3_y*t928 + e3_z*t929
-            t947 = (0.5)*c_z*(e3_x*t939 + e3_y*t941 + e3_z*t942)
-            t948 = 2*Ra_yx
-            t949 = 2*Ra_yy
-            t950 = 2*Ra_yz
-            t951 = e1_x*t948 + e1_y*t949 + e1_z*t950
-            t952 = e2_x*t948 + e2_y*t949 + e2_z*t950
-            t953 = e3_x*t948 + e3_y*t949 + e3_z*t950
-            t954 = 2*Ra_zx
-            t955 = 2*Ra_zy
-            t956 = 2*Ra_zz
-            t957 = e1_x*t954 + e1_y*t955 + e1_z*t956
-            t958 = e2_x*t954 + e2_y*t955 + e2_z*t956
-            t959 = e3_x*t954 + e3_y*t955 + e3_z*t956
-            t960 = 2*t938
-            t961 = -2*t937
-            t962 = 2*t940
-            t963 = -2*t938
-            t964 = 2*t937
-            t965 = -2*t940
-            energies[POWERS + index[first + AT_PORT]] = (-Oma_x*(-e1_x*t915 - e2_x*t917 -
-                e3_x*t919 + t943*(e1_y*t960 + e1_z*t961) + t945*(e2_y*t960 + e2_z*t961) +
-                t947*(e3_y*t960 + e3_z*t961)) - Oma_y*(-e1_y*t915 - e2_y*t917 - e3_y*t919 +
-                t943*(e1_x*t963 + e1_z*t962) + t945*(e2_x*t963 + e2_z*t962) + t947*(e3_x*t963 +
-                e3_z*t962)) - Oma_z*(-e1_z*t915 - e2_z*t917 - e3_z*t919 + t943*(e1_x*t964 +
-                e1_y*t965) + t945*(e2_x*t964 + e2_y*t965) + t947*(e3_x*t964 + e3_y*t965)) -
-                Omb_x*(t916*(e1_x*t901 + e1_y*t903 + e1_z*t905) + t918*(e2_x*t901 + e2_y*t903 +
-                e2_z*t905) + t920*(e3_x*t901 + e3_y*t903 + e3_z*t905)) - Omb_y*(t916*(e1_x*t921 +
-                e1_y*t922 + e1_z*t923) + t918*(e2_x*t921 + e2_y*t922 + e2_z*t923) +
-                t920*(e3_x*t921 + e3_y*t922 + e3_z*t923)) - Omb_z*(t916*(e1_x*t924 + e1_y*t925 +
-                e1_z*t926) + t918*(e2_x*t924 + e2_y*t925 + e2_z*t926) + t920*(e3_x*t924 +
-                e3_y*t925 + e3_z*t926)) - va_x*(-t930*t943 - t944*t945 - t946*t947) -
-                va_y*(-t943*t951 - t945*t952 - t947*t953) - va_z*(-t943*t957 - t945*t958 -
-                t947*t959) - vb_x*(t930*t943 + t944*t945 + t946*t947) - vb_y*(t943*t951 +
-                t945*t952 + t947*t953) - vb_z*(t943*t957 + t945*t958 + t947*t959))
+                e3_z*t905)*(e3_x*t903 + e3_y*t904 + e3_z*t905) + (0.5)*kt_x*(e1_x*t913 + e1_y*t917
+                + e1_z*t918)*(e1_x*t913 + e1_y*t917 + e1_z*t918) + (0.5)*kt_y*(e2_x*t913 +
+                e2_y*t917 + e2_z*t918)*(e2_x*t913 + e2_y*t917 + e2_z*t918) + (0.5)*kt_z*(e3_x*t913
+                + e3_y*t917 + e3_z*t918)*(e3_x*t913 + e3_y*t917 + e3_z*t918))
         if task == ENERGY:
             t900 = 2*Ra_xx
             t901 = 2*Ra_xy
@@ -448,57 +423,232 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
             t931 = e2_x*t927 + e2_y*t928 + e2_z*t929
             t932 = e3_x*t927 + e3_y*t928 + e3_z*t929
-            t933 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t934 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t935 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t936 = -Oma_x + Omb_x*t933 + Omb_y*t934 + Omb_z*t935
-            t937 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-            t938 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-            t939 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-            t940 = -Oma_y + Omb_x*t937 + Omb_y*t938 + Omb_z*t939
-            t941 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-            t942 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-            t943 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-            t944 = -Oma_z + Omb_x*t941 + Omb_y*t942 + Omb_z*t943
-            t945 = ct_x*(e1_x*t936 + e1_y*t940 + e1_z*t944)
-            t946 = ct_y*(e2_x*t936 + e2_y*t940 + e2_z*t944)
-            t947 = ct_z*(e3_x*t936 + e3_y*t940 + e3_z*t944)
-            t948 = 2*t911
-            t949 = -2*t910
-            t950 = 2*t913
-            t951 = -2*t911
-            t952 = 2*t910
-            t953 = -2*t913
-            t954 = 2*t933
-            t955 = 2*t937
-            t956 = 2*t941
-            t957 = (0.5)*t945
-            t958 = (0.5)*t946
-            t959 = (0.5)*t947
-            t960 = 2*t934
-            t961 = 2*t938
-            t962 = 2*t942
-            t963 = 2*t935
-            t964 = 2*t939
-            t965 = 2*t943
+            t933 = 2*t911
+            t934 = -2*t910
+            t935 = n_x*n_z
+            t936 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t937 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t938 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t939 = n_z*t938
+            t940 = n_x*t936 + n_y*t937 + t939
+            t941 = 2*n_x*t940 - 2*t935
+            t942 = n_x*n_y
+            t943 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t944 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t945 = n_y*t944
+            t946 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t947 = n_x*t943 + n_z*t946 + t945
+            t948 = -t947
+            t949 = -2*n_x*t948 - 2*t942
+            t950 = n_y*n_y
+            t951 = n_z*n_z
+            t952 = t950 + t951 - 1
+            t953 = 2*n_y*t948 - 2*n_z*t940 + 2*t952
+            t954 = n_x*n_x
+            t955 = -t952 - t954
+            t956 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t957 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t958 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t959 = -Oma_x + Omb_x*t956 + Omb_y*t957 + Omb_z*t958
+            t960 = -Oma_y + Omb_x*t943 + Omb_y*t944 + Omb_z*t946
+            t961 = -Oma_z + Omb_x*t936 + Omb_y*t937 + Omb_z*t938
+            t962 = n_x*t959 + n_y*t960 + n_z*t961
+            t963 = n_x*t956
+            t964 = n_y*t957 + n_z*t958 + t963
+            t965 = t947*t959 - t960*t964
+            t966 = -t940*t959 + t961*t964
+            t967 = n_x*t962 + n_y*t965 - n_z*t966 + t955*t959
+            t968 = t940*t960 - t947*t961
+            t969 = -n_x*t965 + n_y*t962 + n_z*t968 + t955*t960
+            t970 = n_x*t966 - n_y*t968 + n_z*t962 + t955*t961
+            t971 = (0.5)*ct_x*(e1_x*t967 + e1_y*t969 + e1_z*t970)
+            t972 = (0.5)*ct_y*(e2_x*t967 + e2_y*t969 + e2_z*t970)
+            t973 = (0.5)*ct_z*(e3_x*t967 + e3_y*t969 + e3_z*t970)
+            t974 = 2*t913
+            t975 = -2*t911
+            t976 = 2*n_y*t964 - 2*t942
+            t977 = n_y*n_z
+            t978 = -t940
+            t979 = -2*n_y*t978 - 2*t977
+            t980 = t954 - 1
+            t981 = -2*n_x*t964 + 2*n_z*t978 + 2*t951 + 2*t980
+            t982 = 2*t910
+            t983 = -2*t913
+            t984 = 2*n_z*t947 - 2*t977
+            t985 = -t964
+            t986 = -2*n_z*t985 - 2*t935
+            t987 = 2*n_x*t985 - 2*n_y*t947 + 2*t950 + 2*t980
+            t988 = n_y*t943 + n_z*t936 + t963
+            t989 = -t943*t964 + t947*t956
+            t990 = t936*t964 - t940*t956
+            t991 = 2*n_x*t988 + 2*n_y*t989 - 2*n_z*t990 + 2*t955*t956
+            t992 = -t936*t947 + t940*t943
+            t993 = -2*n_x*t989 + 2*n_y*t988 + 2*n_z*t992 + 2*t943*t955
+            t994 = 2*n_x*t990 - 2*n_y*t992 + 2*n_z*t988 + 2*t936*t955
+            t995 = n_x*t957 + n_z*t937 + t945
+            t996 = -t944*t964 + t947*t957
+            t997 = t937*t964 - t940*t957
+            t998 = 2*n_x*t995 + 2*n_y*t996 - 2*n_z*t997 + 2*t955*t957
+            t999 = -t937*t947 + t940*t944
+            t1000 = -2*n_x*t996 + 2*n_y*t995 + 2*n_z*t999 + 2*t944*t955
+            t1001 = 2*n_x*t997 - 2*n_y*t999 + 2*n_z*t995 + 2*t937*t955
+            t1002 = n_x*t958 + n_y*t946 + t939
+            t1003 = -t946*t964 + t947*t958
+            t1004 = t938*t964 - t940*t958
+            t1005 = 2*n_x*t1002 + 2*n_y*t1003 - 2*n_z*t1004 + 2*t955*t958
+            t1006 = -t938*t947 + t940*t946
+            t1007 = -2*n_x*t1003 + 2*n_y*t1002 + 2*n_z*t1006 + 2*t946*t955
+            t1008 = 2*n_x*t1004 - 2*n_y*t1006 + 2*n_z*t1002 + 2*t938*t955
+            energies[POWERS + index[first + AT_PORT]] = (-Oma_x*(t916*(e1_y*t933 + e1_z*t934) +
+                t918*(e2_y*t933 + e2_z*t934) + t920*(e3_y*t933 + e3_z*t934) + t971*(e1_x*t953 +
+                e1_y*t949 + e1_z*t941) + t972*(e2_x*t953 + e2_y*t949 + e2_z*t941) +
+                t973*(e3_x*t953 + e3_y*t949 + e3_z*t941)) - Oma_y*(t916*(e1_x*t975 + e1_z*t974) +
+                t918*(e2_x*t975 + e2_z*t974) + t920*(e3_x*t975 + e3_z*t974) + t971*(e1_x*t976 +
+                e1_y*t981 + e1_z*t979) + t972*(e2_x*t976 + e2_y*t981 + e2_z*t979) +
+                t973*(e3_x*t976 + e3_y*t981 + e3_z*t979)) - Oma_z*(t916*(e1_x*t982 + e1_y*t983) +
+                t918*(e2_x*t982 + e2_y*t983) + t920*(e3_x*t982 + e3_y*t983) + t971*(e1_x*t986 +
+                e1_y*t984 + e1_z*t987) + t972*(e2_x*t986 + e2_y*t984 + e2_z*t987) +
+                t973*(e3_x*t986 + e3_y*t984 + e3_z*t987)) - Omb_x*(t971*(e1_x*t991 + e1_y*t993 +
+                e1_z*t994) + t972*(e2_x*t991 + e2_y*t993 + e2_z*t994) + t973*(e3_x*t991 +
+                e3_y*t993 + e3_z*t994)) - Omb_y*(t971*(e1_x*t998 + e1_y*t1000 + e1_z*t1001) +
+                t972*(e2_x*t998 + e2_y*t1000 + e2_z*t1001) + t973*(e3_x*t998 + e3_y*t1000 +
+                e3_z*t1001)) - Omb_z*(t971*(e1_x*t1005 + e1_y*t1007 + e1_z*t1008) +
+                t972*(e2_x*t1005 + e2_y*t1007 + e2_z*t1008) + t973*(e3_x*t1005 + e3_y*t1007 +
+                e3_z*t1008)) - va_x*(-t903*t916 - t917*t918 - t919*t920) - va_y*(-t916*t924 -
+                t918*t925 - t920*t926) - va_z*(-t916*t930 - t918*t931 - t920*t932) -
+                vb_x*(t903*t916 + t917*t918 + t919*t920) - vb_y*(t916*t924 + t918*t925 +
+                t920*t926) - vb_z*(t916*t930 + t918*t931 + t920*t932))
+        if task == ENERGY:
+            t900 = 2*Ra_xx
+            t901 = 2*Ra_xy
+            t902 = 2*Ra_xz
+            t903 = e1_x*t900 + e1_y*t901 + e1_z*t902
+            t904 = -va_x + vb_x
+            t905 = -va_y + vb_y
+            t906 = -va_z + vb_z
+            t907 = -xa_x + xb_x
+            t908 = -xa_y + xb_y
+            t909 = -xa_z + xb_z
+            t910 = Ra_xy*t907 + Ra_yy*t908 + Ra_zy*t909
+            t911 = Ra_xz*t907 + Ra_yz*t908 + Ra_zz*t909
+            t912 = -Oma_y*t911 + Oma_z*t910 + Ra_xx*t904 + Ra_yx*t905 + Ra_zx*t906
+            t913 = Ra_xx*t907 + Ra_yx*t908 + Ra_zx*t909
+            t914 = Oma_x*t911 - Oma_z*t913 + Ra_xy*t904 + Ra_yy*t905 + Ra_zy*t906
+            t915 = -Oma_x*t910 + Oma_y*t913 + Ra_xz*t904 + Ra_yz*t905 + Ra_zz*t906
+            t916 = (0.5)*c_x*(e1_x*t912 + e1_y*t914 + e1_z*t915)
+            t917 = e2_x*t900 + e2_y*t901 + e2_z*t902
+            t918 = (0.5)*c_y*(e2_x*t912 + e2_y*t914 + e2_z*t915)
+            t919 = e3_x*t900 + e3_y*t901 + e3_z*t902
+            t920 = (0.5)*c_z*(e3_x*t912 + e3_y*t914 + e3_z*t915)
+            t921 = 2*Ra_yx
+            t922 = 2*Ra_yy
+            t923 = 2*Ra_yz
+            t924 = e1_x*t921 + e1_y*t922 + e1_z*t923
+            t925 = e2_x*t921 + e2_y*t922 + e2_z*t923
+            t926 = e3_x*t921 + e3_y*t922 + e3_z*t923
+            t927 = 2*Ra_zx
+            t928 = 2*Ra_zy
+            t929 = 2*Ra_zz
+            t930 = e1_x*t927 + e1_y*t928 + e1_z*t929
+            t931 = e2_x*t927 + e2_y*t928 + e2_z*t929
+            t932 = e3_x*t927 + e3_y*t928 + e3_z*t929
+            t933 = 2*t911
+            t934 = -2*t910
+            t935 = n_x*n_z
+            t936 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+            t937 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+            t938 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t939 = n_z*t938
+            t940 = n_x*t936 + n_y*t937 + t939
+            t941 = 2*n_x*t940 - 2*t935
+            t942 = n_x*n_y
+            t943 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+            t944 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t945 = n_y*t944
+            t946 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t947 = n_x*t943 + n_z*t946 + t945
+            t948 = -t947
+            t949 = -2*n_x*t948 - 2*t942
+            t950 = n_y*n_y
+            t951 = n_z*n_z
+            t952 = t950 + t951 - 1
+            t953 = 2*n_y*t948 - 2*n_z*t940 + 2*t952
+            t954 = n_x*n_x
+            t955 = -t952 - t954
+            t956 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t957 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t958 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t959 = -Oma_x + Omb_x*t956 + Omb_y*t957 + Omb_z*t958
+            t960 = -Oma_y + Omb_x*t943 + Omb_y*t944 + Omb_z*t946
+            t961 = -Oma_z + Omb_x*t936 + Omb_y*t937 + Omb_z*t938
+            t962 = n_x*t959 + n_y*t960 + n_z*t961
+            t963 = n_x*t956
+            t964 = n_y*t957 + n_z*t958 + t963
+            t965 = t947*t959 - t960*t964
+            t966 = -t940*t959 + t961*t964
+            t967 = n_x*t962 + n_y*t965 - n_z*t966 + t955*t959
+            t968 = t940*t960 - t947*t961
+            t969 = -n_x*t965 + n_y*t962 + n_z*t968 + t955*t960
+            t970 = n_x*t966 - n_y*t968 + n_z*t962 + t955*t961
+            t971 = (0.5)*ct_x*(e1_x*t967 + e1_y*t969 + e1_z*t970)
+            t972 = (0.5)*ct_y*(e2_x*t967 + e2_y*t969 + e2_z*t970)
+            t973 = (0.5)*ct_z*(e3_x*t967 + e3_y*t969 + e3_z*t970)
+            t974 = 2*t913
+            t975 = -2*t911
+            t976 = 2*n_y*t964 - 2*t942
+            t977 = n_y*n_z
+            t978 = -t940
+            t979 = -2*n_y*t978 - 2*t977
+            t980 = t954 - 1
+            t981 = -2*n_x*t964 + 2*n_z*t978 + 2*t951 + 2*t980
+            t982 = 2*t910
+            t983 = -2*t913
+            t984 = 2*n_z*t947 - 2*t977
+            t985 = -t964
+            t986 = -2*n_z*t985 - 2*t935
+            t987 = 2*n_x*t985 - 2*n_y*t947 + 2*t950 + 2*t980
+            t988 = n_y*t943 + n_z*t936 + t963
+            t989 = -t943*t964 + t947*t956
+            t990 = t936*t964 - t940*t956
+            t991 = 2*n_x*t988 + 2*n_y*t989 - 2*n_z*t990 + 2*t955*t956
+            t992 = -t936*t947 + t940*t943
+            t993 = -2*n_x*t989 + 2*n_y*t988 + 2*n_z*t992 + 2*t943*t955
+            t994 = 2*n_x*t990 - 2*n_y*t992 + 2*n_z*t988 + 2*t936*t955
+            t995 = n_x*t957 + n_z*t937 + t945
+            t996 = -t944*t964 + t947*t957
+            t997 = t937*t964 - t940*t957
+            t998 = 2*n_x*t995 + 2*n_y*t996 - 2*n_z*t997 + 2*t955*t957
+            t999 = -t937*t947 + t940*t944
+            t1000 = -2*n_x*t996 + 2*n_y*t995 + 2*n_z*t999 + 2*t944*t955
+            t1001 = 2*n_x*t997 - 2*n_y*t999 + 2*n_z*t995 + 2*t937*t955
+            t1002 = n_x*t958 + n_y*t946 + t939
+            t1003 = -t946*t964 + t947*t958
+            t1004 = t938*t964 - t940*t958
+            t1005 = 2*n_x*t1002 + 2*n_y*t1003 - 2*n_z*t1004 + 2*t955*t958
+            t1006 = -t938*t947 + t940*t946
+            t1007 = -2*n_x*t1003 + 2*n_y*t1002 + 2*n_z*t1006 + 2*t946*t955
+            t1008 = 2*n_x*t1004 - 2*n_y*t1006 + 2*n_z*t1002 + 2*t938*t955
             g[0] = -t903*t916 - t917*t918 - t919*t920
             g[1] = -t916*t924 - t918*t925 - t920*t926
             g[2] = -t916*t930 - t918*t931 - t920*t932
             g[3] = t903*t916 + t917*t918 + t919*t920
             g[4] = t916*t924 + t918*t925 + t920*t926
             g[5] = t916*t930 + t918*t931 + t920*t932
-            g[6] = (-e1_x*t945 - e2_x*t946 - e3_x*t947 + t916*(e1_y*t948 + e1_z*t949) +
-                t918*(e2_y*t948 + e2_z*t949) + t920*(e3_y*t948 + e3_z*t949))
-            g[7] = (-e1_y*t945 - e2_y*t946 - e3_y*t947 + t916*(e1_x*t951 + e1_z*t950) +
-                t918*(e2_x*t951 + e2_z*t950) + t920*(e3_x*t951 + e3_z*t950))
-            g[8] = (-e1_z*t945 - e2_z*t946 - e3_z*t947 + t916*(e1_x*t952 + e1_y*t953) +
-                t918*(e2_x*t952 + e2_y*t953) + t920*(e3_x*t952 + e3_y*t953))
-            g[9] = (t957*(e1_x*t954 + e1_y*t955 + e1_z*t956) + t958*(e2_x*t954 + e2_y*t955 +
-                e2_z*t956) + t959*(e3_x*t954 + e3_y*t955 + e3_z*t956))
-            g[10] = (t957*(e1_x*t960 + e1_y*t961 + e1_z*t962) + t958*(e2_x*t960 + e2_y*t961 +
-                e2_z*t962) + t959*(e3_x*t960 + e3_y*t961 + e3_z*t962))
-            g[11] = (t957*(e1_x*t963 + e1_y*t964 + e1_z*t965) + t958*(e2_x*t963 + e2_y*t964 +
-                e2_z*t965) + t959*(e3_x*t963 + e3_y*t964 + e3_z*t965))
+            g[6] = (t916*(e1_y*t933 + e1_z*t934) + t918*(e2_y*t933 + e2_z*t934) + t920*(e3_y*t933
+                + e3_z*t934) + t971*(e1_x*t953 + e1_y*t949 + e1_z*t941) + t972*(e2_x*t953 +
+                e2_y*t949 + e2_z*t941) + t973*(e3_x*t953 + e3_y*t949 + e3_z*t941))
+            g[7] = (t916*(e1_x*t975 + e1_z*t974) + t918*(e2_x*t975 + e2_z*t974) + t920*(e3_x*t975
+                + e3_z*t974) + t971*(e1_x*t976 + e1_y*t981 + e1_z*t979) + t972*(e2_x*t976 +
+                e2_y*t981 + e2_z*t979) + t973*(e3_x*t976 + e3_y*t981 + e3_z*t979))
+            g[8] = (t916*(e1_x*t982 + e1_y*t983) + t918*(e2_x*t982 + e2_y*t983) + t920*(e3_x*t982
+                + e3_y*t983) + t971*(e1_x*t986 + e1_y*t984 + e1_z*t987) + t972*(e2_x*t986 +
+                e2_y*t984 + e2_z*t987) + t973*(e3_x*t986 + e3_y*t984 + e3_z*t987))
+            g[9] = (t971*(e1_x*t991 + e1_y*t993 + e1_z*t994) + t972*(e2_x*t991 + e2_y*t993 +
+                e2_z*t994) + t973*(e3_x*t991 + e3_y*t993 + e3_z*t994))
+            g[10] = (t971*(e1_x*t998 + e1_y*t1000 + e1_z*t1001) + t972*(e2_x*t998 + e2_y*t1000 +
+                e2_z*t1001) + t973*(e3_x*t998 + e3_y*t1000 + e3_z*t1001))
+            g[11] = (t971*(e1_x*t1005 + e1_y*t1007 + e1_z*t1008) + t972*(e2_x*t1005 + e2_y*t1007 +
+                e2_z*t1008) + t973*(e3_x*t1005 + e3_y*t1007 + e3_z*t1008))
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]
@@ -540,477 +690,580 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = du[9]
                 uthb_y = du[10]
                 uthb_z = du[11]
-                t168 = -uxa_x + uxb_x
-                t169 = -uxa_y + uxb_y
-                t170 = -uxa_z + uxb_z
-                t171 = -xa_x + xb_x
-                t172 = -xa_y + xb_y
-                t173 = -xa_z + xb_z
-                t174 = Ra_xy*t171 + Ra_yy*t172 + Ra_zy*t173
-                t175 = Ra_xz*t171 + Ra_yz*t172 + Ra_zz*t173
-                t176 = Ra_xx*t168 + Ra_yx*t169 + Ra_zx*t170 + t174*utha_z - t175*utha_y
-                t177 = Ra_xx*t171 + Ra_yx*t172 + Ra_zx*t173
-                t178 = Ra_xy*t168 + Ra_yy*t169 + Ra_zy*t170 + t175*utha_x - t177*utha_z
-                t179 = Ra_xz*t168 + Ra_yz*t169 + Ra_zz*t170 - t174*utha_x + t177*utha_y
-                t180 = e1_x*t176 + e1_y*t178 + e1_z*t179
-                t181 = 2*Ra_xx
-                t182 = 2*Ra_xy
-                t183 = 2*Ra_xz
-                t184 = e1_x*t181 + e1_y*t182 + e1_z*t183
-                t185 = -t184
-                t186 = (0.5)*c_x
-                t187 = t185*t186
-                t188 = e2_x*t176 + e2_y*t178 + e2_z*t179
-                t189 = e2_x*t181 + e2_y*t182 + e2_z*t183
-                t190 = -t189
-                t191 = (0.5)*c_y
-                t192 = t190*t191
-                t193 = e3_x*t176 + e3_y*t178 + e3_z*t179
-                t194 = e3_x*t181 + e3_y*t182 + e3_z*t183
-                t195 = -t194
-                t196 = (0.5)*c_z
-                t197 = t195*t196
-                t198 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t199 = 2*t198
-                t200 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t201 = 2*t200
-                t202 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t203 = 2*t202
-                t204 = e1_x*t199 + e1_y*t201 + e1_z*t203
-                t205 = -t204
-                t206 = (0.5)*k_x
-                t207 = t206*(e1_x*t177 + e1_y*t174 + e1_z*t175)
-                t208 = e2_x*t199 + e2_y*t201 + e2_z*t203
-                t209 = -t208
-                t210 = (0.5)*k_y
-                t211 = t210*(e2_x*t177 + e2_y*t174 + e2_z*t175)
-                t212 = e3_x*t199 + e3_y*t201 + e3_z*t203
-                t213 = -t212
-                t214 = (0.5)*k_z
-                t215 = t214*(e3_x*t177 + e3_y*t174 + e3_z*t175)
-                t216 = -dxa_x + dxb_x
-                t217 = -dxa_y + dxb_y
-                t218 = -dxa_z + dxb_z
-                t219 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t220 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t221 = Ra_xx*t216 + Ra_yx*t217 + Ra_zx*t218 + t171*t198 + t172*t219 + t173*t220
-                t222 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t223 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t224 = Ra_xy*t216 + Ra_yy*t217 + Ra_zy*t218 + t171*t200 + t172*t222 + t173*t223
-                t225 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t226 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t227 = Ra_xz*t216 + Ra_yz*t217 + Ra_zz*t218 + t171*t202 + t172*t225 + t173*t226
-                t228 = t206*(e1_x*t221 + e1_y*t224 + e1_z*t227)
-                t229 = t210*(e2_x*t221 + e2_y*t224 + e2_z*t227)
-                t230 = t214*(e3_x*t221 + e3_y*t224 + e3_z*t227)
-                t231 = -va_x + vb_x
-                t232 = -va_y + vb_y
-                t233 = -va_z + vb_z
-                t234 = -Oma_y*t175 + Oma_z*t174 + Ra_xx*t231 + Ra_yx*t232 + Ra_zx*t233
-                t235 = Oma_x*t175 - Oma_z*t177 + Ra_xy*t231 + Ra_yy*t232 + Ra_zy*t233
-                t236 = -Oma_x*t174 + Oma_y*t177 + Ra_xz*t231 + Ra_yz*t232 + Ra_zz*t233
-                t237 = t186*(e1_x*t234 + e1_y*t235 + e1_z*t236)
-                t238 = t191*(e2_x*t234 + e2_y*t235 + e2_z*t236)
-                t239 = t196*(e3_x*t234 + e3_y*t235 + e3_z*t236)
-                t240 = -Oma_y*t227 + Oma_z*t224 + t198*t231 + t219*t232 + t220*t233
-                t241 = Oma_x*t227 - Oma_z*t221 + t200*t231 + t222*t232 + t223*t233
-                t242 = -Oma_x*t224 + Oma_y*t221 + t202*t231 + t225*t232 + t226*t233
-                t243 = e1_x*t240 + e1_y*t241 + e1_z*t242
-                t244 = e2_x*t240 + e2_y*t241 + e2_z*t242
-                t245 = e3_x*t240 + e3_y*t241 + e3_z*t242
-                t246 = 2*Ra_yx
-                t247 = 2*Ra_yy
-                t248 = 2*Ra_yz
-                t249 = e1_x*t246 + e1_y*t247 + e1_z*t248
-                t250 = -t249
-                t251 = t186*t250
-                t252 = e2_x*t246 + e2_y*t247 + e2_z*t248
+                t212 = -uxa_x + uxb_x
+                t213 = -uxa_y + uxb_y
+                t214 = -uxa_z + uxb_z
+                t215 = -xa_x + xb_x
+                t216 = -xa_y + xb_y
+                t217 = -xa_z + xb_z
+                t218 = Ra_xy*t215 + Ra_yy*t216 + Ra_zy*t217
+                t219 = Ra_xz*t215 + Ra_yz*t216 + Ra_zz*t217
+                t220 = Ra_xx*t212 + Ra_yx*t213 + Ra_zx*t214 + t218*utha_z - t219*utha_y
+                t221 = Ra_xx*t215 + Ra_yx*t216 + Ra_zx*t217
+                t222 = Ra_xy*t212 + Ra_yy*t213 + Ra_zy*t214 + t219*utha_x - t221*utha_z
+                t223 = Ra_xz*t212 + Ra_yz*t213 + Ra_zz*t214 - t218*utha_x + t221*utha_y
+                t224 = e1_x*t220 + e1_y*t222 + e1_z*t223
+                t225 = 2*Ra_xx
+                t226 = 2*Ra_xy
+                t227 = 2*Ra_xz
+                t228 = e1_x*t225 + e1_y*t226 + e1_z*t227
+                t229 = -t228
+                t230 = (0.5)*c_x
+                t231 = t229*t230
+                t232 = e2_x*t220 + e2_y*t222 + e2_z*t223
+                t233 = e2_x*t225 + e2_y*t226 + e2_z*t227
+                t234 = -t233
+                t235 = (0.5)*c_y
+                t236 = t234*t235
+                t237 = e3_x*t220 + e3_y*t222 + e3_z*t223
+                t238 = e3_x*t225 + e3_y*t226 + e3_z*t227
+                t239 = -t238
+                t240 = (0.5)*c_z
+                t241 = t239*t240
+                t242 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t243 = 2*t242
+                t244 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t245 = 2*t244
+                t246 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t247 = 2*t246
+                t248 = e1_x*t243 + e1_y*t245 + e1_z*t247
+                t249 = -t248
+                t250 = (0.5)*k_x
+                t251 = t250*(e1_x*t221 + e1_y*t218 + e1_z*t219)
+                t252 = e2_x*t243 + e2_y*t245 + e2_z*t247
                 t253 = -t252
-                t254 = t191*t253
-                t255 = e3_x*t246 + e3_y*t247 + e3_z*t248
-                t256 = -t255
-                t257 = t196*t256
-                t258 = 2*t219
-                t259 = 2*t222
-                t260 = 2*t225
-                t261 = e1_x*t258 + e1_y*t259 + e1_z*t260
-                t262 = -t261
-                t263 = e2_x*t258 + e2_y*t259 + e2_z*t260
-                t264 = -t263
-                t265 = e3_x*t258 + e3_y*t259 + e3_z*t260
-                t266 = -t265
-                t267 = 2*Ra_zx
-                t268 = 2*Ra_zy
-                t269 = 2*Ra_zz
-                t270 = e1_x*t267 + e1_y*t268 + e1_z*t269
-                t271 = -t270
-                t272 = t186*t271
-                t273 = e2_x*t267 + e2_y*t268 + e2_z*t269
-                t274 = -t273
-                t275 = t191*t274
-                t276 = e3_x*t267 + e3_y*t268 + e3_z*t269
-                t277 = -t276
-                t278 = t196*t277
-                t279 = 2*t220
-                t280 = 2*t223
-                t281 = 2*t226
-                t282 = e1_x*t279 + e1_y*t280 + e1_z*t281
-                t283 = -t282
-                t284 = e2_x*t279 + e2_y*t280 + e2_z*t281
-                t285 = -t284
-                t286 = e3_x*t279 + e3_y*t280 + e3_z*t281
-                t287 = -t286
-                t288 = t184*t186
-                t289 = t189*t191
-                t290 = t194*t196
-                t291 = t186*t249
-                t292 = t191*t252
-                t293 = t196*t255
-                t294 = t186*t270
-                t295 = t191*t273
-                t296 = t196*t276
-                t297 = Ra_xx*Rb_xx
-                t298 = Ra_yx*Rb_yx
-                t299 = Ra_zx*Rb_zx
-                t300 = t297 + t298 + t299
-                t301 = Ra_xx*Rb_xy
-                t302 = Ra_yx*Rb_yy
-                t303 = Ra_zx*Rb_zy
-                t304 = t301 + t302 + t303
-                t305 = Ra_xx*Rb_xz
-                t306 = Ra_yx*Rb_yz
-                t307 = Ra_zx*Rb_zz
-                t308 = t305 + t306 + t307
-                t309 = t300*uthb_x + t304*uthb_y + t308*uthb_z - utha_x
-                t310 = Ra_xy*Rb_xx
-                t311 = Ra_yy*Rb_yx
-                t312 = Ra_zy*Rb_zx
-                t313 = t310 + t311 + t312
-                t314 = Ra_xy*Rb_xy
-                t315 = Ra_yy*Rb_yy
-                t316 = Ra_zy*Rb_zy
-                t317 = t314 + t315 + t316
-                t318 = Ra_xy*Rb_xz
-                t319 = Ra_yy*Rb_yz
-                t320 = Ra_zy*Rb_zz
-                t321 = t318 + t319 + t320
-                t322 = t313*uthb_x + t317*uthb_y + t321*uthb_z - utha_y
-                t323 = Ra_xz*Rb_xx
-                t324 = Ra_yz*Rb_yx
-                t325 = Ra_zz*Rb_zx
-                t326 = t323 + t324 + t325
-                t327 = Ra_xz*Rb_xy
-                t328 = Ra_yz*Rb_yy
-                t329 = Ra_zz*Rb_zy
-                t330 = t327 + t328 + t329
-                t331 = Ra_xz*Rb_xz
-                t332 = Ra_yz*Rb_yz
-                t333 = Ra_zz*Rb_zz
-                t334 = t331 + t332 + t333
-                t335 = t326*uthb_x + t330*uthb_y + t334*uthb_z - utha_z
-                t336 = e1_x*t309 + e1_y*t322 + e1_z*t335
-                t337 = ct_x*e1_x
-                t338 = e2_x*t309 + e2_y*t322 + e2_z*t335
-                t339 = ct_y*e2_x
-                t340 = e3_x*t309 + e3_y*t322 + e3_z*t335
-                t341 = ct_z*e3_x
-                t342 = 2*t175
-                t343 = -2*t174
-                t344 = e1_y*t342 + e1_z*t343
-                t345 = t186*t344
-                t346 = e2_y*t342 + e2_z*t343
-                t347 = t191*t346
-                t348 = e3_y*t342 + e3_z*t343
-                t349 = t196*t348
-                t350 = 2*t227
-                t351 = -2*t224
-                t352 = e1_y*t350 + e1_z*t351
-                t353 = e2_y*t350 + e2_z*t351
-                t354 = e3_y*t350 + e3_z*t351
-                t355 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t356 = Ra_xy*t355
-                t357 = (0.5)*t356
-                t358 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t359 = Ra_yy*t358
-                t360 = (0.5)*t359
-                t361 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t362 = Ra_zy*t361
-                t363 = (0.5)*t362
-                t364 = Rb_xx*t200
-                t365 = (0.5)*t364
-                t366 = Rb_yx*t222
-                t367 = (0.5)*t366
-                t368 = Rb_zx*t223
-                t369 = (0.5)*t368
-                t370 = t357 + t360 + t363 + t365 + t367 + t369
-                t371 = 2*e1_y
-                t372 = Ra_xz*t355
-                t373 = (0.5)*t372
-                t374 = Ra_yz*t358
-                t375 = (0.5)*t374
-                t376 = Ra_zz*t361
-                t377 = (0.5)*t376
-                t378 = Rb_xx*t202
-                t379 = (0.5)*t378
-                t380 = Rb_yx*t225
-                t381 = (0.5)*t380
-                t382 = Rb_zx*t226
-                t383 = (0.5)*t382
-                t384 = t373 + t375 + t377 + t379 + t381 + t383
-                t385 = 2*e1_z
-                t386 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t387 = Ra_xz*t386
-                t388 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t389 = Ra_yz*t388
-                t390 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t391 = Ra_zz*t390
-                t392 = Rb_xz*t202
-                t393 = Rb_yz*t225
-                t394 = Rb_zz*t226
-                t395 = (0.5)*t387 + (0.5)*t389 + (0.5)*t391 + (0.5)*t392 + (0.5)*t393 + (0.5)*t394
-                t396 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t397 = Ra_xy*t396
-                t398 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t399 = Ra_yy*t398
-                t400 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t401 = Ra_zy*t400
-                t402 = Rb_xy*t200
-                t403 = Rb_yy*t222
-                t404 = Rb_zy*t223
-                t405 = (0.5)*t397 + (0.5)*t399 + (0.5)*t401 + (0.5)*t402 + (0.5)*t403 + (0.5)*t404
-                t406 = t395 + t405
-                t407 = -t406
-                t408 = 2*e1_x
-                t409 = (0.5)*t327
-                t410 = (0.5)*t328
-                t411 = (0.5)*t329
-                t412 = (0.5)*t318 + (0.5)*t319 + (0.5)*t320
-                t413 = t409 + t410 + t411 - t412
-                t414 = (0.5)*t323
-                t415 = (0.5)*t324
-                t416 = (0.5)*t325
-                t417 = (0.5)*t305 + (0.5)*t306 + (0.5)*t307
-                t418 = -t414 - t415 - t416 + t417
-                t419 = (0.5)*t310
-                t420 = (0.5)*t311
-                t421 = (0.5)*t312
-                t422 = (0.5)*t301 + (0.5)*t302 + (0.5)*t303
-                t423 = t419 + t420 + t421 - t422
-                t424 = (0.5)*kt_x
-                t425 = t424*(e1_x*t413 + e1_y*t418 + e1_z*t423)
-                t426 = 2*e2_y
-                t427 = 2*e2_z
-                t428 = 2*e2_x
-                t429 = (0.5)*kt_y
-                t430 = t429*(e2_x*t413 + e2_y*t418 + e2_z*t423)
-                t431 = 2*e3_y
-                t432 = 2*e3_z
-                t433 = 2*e3_x
-                t434 = (0.5)*kt_z
-                t435 = t434*(e3_x*t413 + e3_y*t418 + e3_z*t423)
-                t436 = t419 + t420 + t421
-                t437 = t414 + t415 + t416
-                t438 = (0.5)*t331 + (0.5)*t332 + (0.5)*t333
-                t439 = (0.5)*t314 + (0.5)*t315 + (0.5)*t316
-                t440 = t438 + t439
-                t441 = -t440
-                t442 = Ra_xz*t396
-                t443 = (0.5)*t442
-                t444 = Ra_yz*t398
-                t445 = (0.5)*t444
-                t446 = Ra_zz*t400
-                t447 = (0.5)*t446
-                t448 = Rb_xy*t202
-                t449 = (0.5)*t448
-                t450 = Rb_yy*t225
-                t451 = (0.5)*t450
-                t452 = Rb_zy*t226
-                t453 = (0.5)*t452
-                t454 = Ra_xy*t386
-                t455 = Ra_yy*t388
-                t456 = Ra_zy*t390
-                t457 = Rb_xz*t200
-                t458 = Rb_yz*t222
-                t459 = Rb_zz*t223
-                t460 = (0.5)*t454 + (0.5)*t455 + (0.5)*t456 + (0.5)*t457 + (0.5)*t458 + (0.5)*t459
-                t461 = t443 + t445 + t447 + t449 + t451 + t453 - t460
-                t462 = Ra_xx*t386
-                t463 = Ra_yx*t388
-                t464 = Ra_zx*t390
-                t465 = Rb_xz*t198
-                t466 = Rb_yz*t219
-                t467 = Rb_zz*t220
-                t468 = (0.5)*t462 + (0.5)*t463 + (0.5)*t464 + (0.5)*t465 + (0.5)*t466 + (0.5)*t467
-                t469 = -t373 - t375 - t377 - t379 - t381 - t383 + t468
-                t470 = Ra_xx*t396
-                t471 = Ra_yx*t398
-                t472 = Ra_zx*t400
-                t473 = Rb_xy*t198
-                t474 = Rb_yy*t219
-                t475 = Rb_zy*t220
-                t476 = (0.5)*t470 + (0.5)*t471 + (0.5)*t472 + (0.5)*t473 + (0.5)*t474 + (0.5)*t475
-                t477 = t357 + t360 + t363 + t365 + t367 + t369 - t476
-                t478 = t424*(e1_x*t461 + e1_y*t469 + e1_z*t477)
-                t479 = t429*(e2_x*t461 + e2_y*t469 + e2_z*t477)
-                t480 = t434*(e3_x*t461 + e3_y*t469 + e3_z*t477)
-                t481 = Ra_xx*t355
-                t482 = Ra_yx*t358
-                t483 = Ra_zx*t361
-                t484 = Rb_xx*t198
-                t485 = Rb_yx*t219
-                t486 = Rb_zx*t220
-                t487 = t481 + t482 + t483 + t484 + t485 + t486
-                t488 = t470 + t471 + t472 + t473 + t474 + t475
-                t489 = t462 + t463 + t464 + t465 + t466 + t467
-                t490 = Omb_x*t487 + Omb_y*t488 + Omb_z*t489
-                t491 = t356 + t359 + t362 + t364 + t366 + t368
-                t492 = t397 + t399 + t401 + t402 + t403 + t404
-                t493 = t454 + t455 + t456 + t457 + t458 + t459
-                t494 = Omb_x*t491 + Omb_y*t492 + Omb_z*t493
-                t495 = t372 + t374 + t376 + t378 + t380 + t382
-                t496 = t442 + t444 + t446 + t448 + t450 + t452
-                t497 = t387 + t389 + t391 + t392 + t393 + t394
-                t498 = Omb_x*t495 + Omb_y*t496 + Omb_z*t497
-                t499 = e1_x*t490 + e1_y*t494 + e1_z*t498
-                t500 = e2_x*t490 + e2_y*t494 + e2_z*t498
-                t501 = e3_x*t490 + e3_y*t494 + e3_z*t498
-                t502 = ct_x*e1_y
-                t503 = ct_y*e2_y
-                t504 = ct_z*e3_y
-                t505 = -t175
-                t506 = t177*t385 + t408*t505
-                t507 = t186*t506
-                t508 = t177*t427 + t428*t505
-                t509 = t191*t508
-                t510 = t177*t432 + t433*t505
-                t511 = t196*t510
-                t512 = -t227
-                t513 = t221*t385 + t408*t512
-                t514 = t221*t427 + t428*t512
-                t515 = t221*t432 + t433*t512
-                t516 = t443 + t445 + t447 + t449 + t451 + t453
-                t517 = (0.5)*t481 + (0.5)*t482 + (0.5)*t483 + (0.5)*t484 + (0.5)*t485 + (0.5)*t486
-                t518 = t395 + t517
-                t519 = -t518
-                t520 = t409 + t410 + t411
-                t521 = (0.5)*t297 + (0.5)*t298 + (0.5)*t299
-                t522 = t438 + t521
-                t523 = -t522
-                t524 = ct_x*e1_z
-                t525 = ct_y*e2_z
-                t526 = ct_z*e3_z
-                t527 = -t177
-                t528 = t174*t408 + t371*t527
-                t529 = t186*t528
-                t530 = t174*t428 + t426*t527
-                t531 = t191*t530
-                t532 = t174*t433 + t431*t527
-                t533 = t196*t532
-                t534 = -t221
-                t535 = t224*t408 + t371*t534
-                t536 = t224*t428 + t426*t534
-                t537 = t224*t433 + t431*t534
-                t538 = t405 + t517
-                t539 = -t538
-                t540 = t439 + t521
-                t541 = -t540
-                t542 = (0.5)*ct_x
-                t543 = t542*(t300*t408 + t313*t371 + t326*t385)
-                t544 = (0.5)*ct_y
-                t545 = t544*(t300*t428 + t313*t426 + t326*t427)
-                t546 = (0.5)*ct_z
-                t547 = t546*(t300*t433 + t313*t431 + t326*t432)
-                t548 = -Oma_x + Omb_x*t300 + Omb_y*t304 + Omb_z*t308
-                t549 = -Oma_y + Omb_x*t313 + Omb_y*t317 + Omb_z*t321
-                t550 = -Oma_z + Omb_x*t326 + Omb_y*t330 + Omb_z*t334
-                t551 = t542*(e1_x*t548 + e1_y*t549 + e1_z*t550)
-                t552 = t544*(e2_x*t548 + e2_y*t549 + e2_z*t550)
-                t553 = t546*(e3_x*t548 + e3_y*t549 + e3_z*t550)
-                t554 = -t476
-                t555 = -t468
-                t556 = -t422
-                t557 = -t417
-                t558 = t542*(t304*t408 + t317*t371 + t330*t385)
-                t559 = t544*(t304*t428 + t317*t426 + t330*t427)
-                t560 = t546*(t304*t433 + t317*t431 + t330*t432)
-                t561 = -t370
-                t562 = -t460
-                t563 = -t436
-                t564 = -t412
-                t565 = t542*(t308*t408 + t321*t371 + t334*t385)
-                t566 = t544*(t308*t428 + t321*t426 + t334*t427)
-                t567 = t546*(t308*t433 + t321*t431 + t334*t432)
-                t568 = -t384
-                t569 = -t516
-                t570 = -t437
-                t571 = -t520
-                J[column] = (c_damping*(t180*t187 + t188*t192 + t193*t197) +
-                    c_stiffness*(t185*t228 + t187*t243 + t190*t229 + t192*t244 + t195*t230 +
-                    t197*t245 + t205*t207 + t205*t237 + t209*t211 + t209*t238 + t213*t215 +
-                    t213*t239))
-                J[12 + column] = (c_damping*(t180*t251 + t188*t254 + t193*t257) +
-                    c_stiffness*(t207*t262 + t211*t264 + t215*t266 + t228*t250 + t229*t253 +
-                    t230*t256 + t237*t262 + t238*t264 + t239*t266 + t243*t251 + t244*t254 +
-                    t245*t257))
-                J[24 + column] = (c_damping*(t180*t272 + t188*t275 + t193*t278) +
-                    c_stiffness*(t207*t283 + t211*t285 + t215*t287 + t228*t271 + t229*t274 +
-                    t230*t277 + t237*t283 + t238*t285 + t239*t287 + t243*t272 + t244*t275 +
-                    t245*t278))
-                J[36 + column] = (c_damping*(t180*t288 + t188*t289 + t193*t290) +
-                    c_stiffness*(t184*t228 + t189*t229 + t194*t230 + t204*t207 + t204*t237 +
-                    t208*t211 + t208*t238 + t212*t215 + t212*t239 + t243*t288 + t244*t289 +
-                    t245*t290))
-                J[48 + column] = (c_damping*(t180*t291 + t188*t292 + t193*t293) +
-                    c_stiffness*(t207*t261 + t211*t263 + t215*t265 + t228*t249 + t229*t252 +
-                    t230*t255 + t237*t261 + t238*t263 + t239*t265 + t243*t291 + t244*t292 +
-                    t245*t293))
-                J[60 + column] = (c_damping*(t180*t294 + t188*t295 + t193*t296) +
-                    c_stiffness*(t207*t282 + t211*t284 + t215*t286 + t228*t270 + t229*t273 +
-                    t230*t276 + t237*t282 + t238*t284 + t239*t286 + t243*t294 + t244*t295 +
-                    t245*t296))
-                J[72 + column] = (c_damping*(t180*t345 + t188*t347 + t193*t349 - t336*t337 -
-                    t338*t339 - t340*t341) + c_stiffness*(t207*t352 + t211*t353 + t215*t354 +
-                    t228*t344 + t229*t346 + t230*t348 + t237*t352 + t238*t353 + t239*t354 +
-                    t243*t345 + t244*t347 + t245*t349 - t337*t499 - t339*t500 - t341*t501 +
-                    t425*(t370*t371 + t384*t385 + t407*t408) + t430*(t370*t426 + t384*t427 +
-                    t407*t428) + t435*(t370*t431 + t384*t432 + t407*t433) + t478*(t371*t436 +
-                    t385*t437 + t408*t441) + t479*(t426*t436 + t427*t437 + t428*t441) +
-                    t480*(t431*t436 + t432*t437 + t433*t441)))
-                J[84 + column] = (c_damping*(t180*t507 + t188*t509 + t193*t511 - t336*t502 -
-                    t338*t503 - t340*t504) + c_stiffness*(t207*t513 + t211*t514 + t215*t515 +
-                    t228*t506 + t229*t508 + t230*t510 + t237*t513 + t238*t514 + t239*t515 +
-                    t243*t507 + t244*t509 + t245*t511 + t425*(t371*t519 + t385*t516 + t408*t476) +
-                    t430*(t426*t519 + t427*t516 + t428*t476) + t435*(t431*t519 + t432*t516 +
-                    t433*t476) + t478*(t371*t523 + t385*t520 + t408*t422) + t479*(t422*t428 +
-                    t426*t523 + t427*t520) + t480*(t422*t433 + t431*t523 + t432*t520) - t499*t502
-                    - t500*t503 - t501*t504))
-                J[96 + column] = (c_damping*(t180*t529 + t188*t531 + t193*t533 - t336*t524 -
-                    t338*t525 - t340*t526) + c_stiffness*(t207*t535 + t211*t536 + t215*t537 +
-                    t228*t528 + t229*t530 + t230*t532 + t237*t535 + t238*t536 + t239*t537 +
-                    t243*t529 + t244*t531 + t245*t533 + t425*(t371*t460 + t385*t539 + t408*t468) +
-                    t430*(t426*t460 + t427*t539 + t428*t468) + t435*(t431*t460 + t432*t539 +
-                    t433*t468) + t478*(t371*t412 + t385*t541 + t408*t417) + t479*(t412*t426 +
-                    t417*t428 + t427*t541) + t480*(t412*t431 + t417*t433 + t432*t541) - t499*t524
-                    - t500*t525 - t501*t526))
-                J[108 + column] = (c_damping*(t336*t543 + t338*t545 + t340*t547) +
-                    c_stiffness*(t425*(t371*t554 + t385*t555 + t406*t408) + t430*(t406*t428 +
-                    t426*t554 + t427*t555) + t435*(t406*t433 + t431*t554 + t432*t555) +
-                    t478*(t371*t556 + t385*t557 + t408*t440) + t479*(t426*t556 + t427*t557 +
-                    t428*t440) + t480*(t431*t556 + t432*t557 + t433*t440) + t499*t543 + t500*t545
-                    + t501*t547 + t551*(t371*t491 + t385*t495 + t408*t487) + t552*(t426*t491 +
-                    t427*t495 + t428*t487) + t553*(t431*t491 + t432*t495 + t433*t487)))
-                J[120 + column] = (c_damping*(t336*t558 + t338*t559 + t340*t560) +
-                    c_stiffness*(t425*(t371*t518 + t385*t562 + t408*t561) + t430*(t426*t518 +
-                    t427*t562 + t428*t561) + t435*(t431*t518 + t432*t562 + t433*t561) +
-                    t478*(t371*t522 + t385*t564 + t408*t563) + t479*(t426*t522 + t427*t564 +
-                    t428*t563) + t480*(t431*t522 + t432*t564 + t433*t563) + t499*t558 + t500*t559
-                    + t501*t560 + t551*(t371*t492 + t385*t496 + t408*t488) + t552*(t426*t492 +
-                    t427*t496 + t428*t488) + t553*(t431*t492 + t432*t496 + t433*t488)))
-                J[132 + column] = (c_damping*(t336*t565 + t338*t566 + t340*t567) +
-                    c_stiffness*(t425*(t371*t569 + t385*t538 + t408*t568) + t430*(t426*t569 +
-                    t427*t538 + t428*t568) + t435*(t431*t569 + t432*t538 + t433*t568) +
-                    t478*(t371*t571 + t385*t540 + t408*t570) + t479*(t426*t571 + t427*t540 +
-                    t428*t570) + t480*(t431*t571 + t432*t540 + t433*t570) + t499*t565 + t500*t566
-                    + t501*t567 + t551*(t371*t493 + t385*t497 + t408*t489) + t552*(t426*t493 +
-                    t427*t497 + t428*t489) + t553*(t431*t493 + t432*t497 + t433*t489)))
+                t254 = (0.5)*k_y
+                t255 = t254*(e2_x*t221 + e2_y*t218 + e2_z*t219)
+                t256 = e3_x*t243 + e3_y*t245 + e3_z*t247
+                t257 = -t256
+                t258 = (0.5)*k_z
+                t259 = t258*(e3_x*t221 + e3_y*t218 + e3_z*t219)
+                t260 = -dxa_x + dxb_x
+                t261 = -dxa_y + dxb_y
+                t262 = -dxa_z + dxb_z
+                t263 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t264 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t265 = Ra_xx*t260 + Ra_yx*t261 + Ra_zx*t262 + t215*t242 + t216*t263 + t217*t264
+                t266 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t267 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t268 = Ra_xy*t260 + Ra_yy*t261 + Ra_zy*t262 + t215*t244 + t216*t266 + t217*t267
+                t269 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t270 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t271 = Ra_xz*t260 + Ra_yz*t261 + Ra_zz*t262 + t215*t246 + t216*t269 + t217*t270
+                t272 = t250*(e1_x*t265 + e1_y*t268 + e1_z*t271)
+                t273 = t254*(e2_x*t265 + e2_y*t268 + e2_z*t271)
+                t274 = t258*(e3_x*t265 + e3_y*t268 + e3_z*t271)
+                t275 = -va_x + vb_x
+                t276 = -va_y + vb_y
+                t277 = -va_z + vb_z
+                t278 = -Oma_y*t219 + Oma_z*t218 + Ra_xx*t275 + Ra_yx*t276 + Ra_zx*t277
+                t279 = Oma_x*t219 - Oma_z*t221 + Ra_xy*t275 + Ra_yy*t276 + Ra_zy*t277
+                t280 = -Oma_x*t218 + Oma_y*t221 + Ra_xz*t275 + Ra_yz*t276 + Ra_zz*t277
+                t281 = t230*(e1_x*t278 + e1_y*t279 + e1_z*t280)
+                t282 = t235*(e2_x*t278 + e2_y*t279 + e2_z*t280)
+                t283 = t240*(e3_x*t278 + e3_y*t279 + e3_z*t280)
+                t284 = -Oma_y*t271 + Oma_z*t268 + t242*t275 + t263*t276 + t264*t277
+                t285 = Oma_x*t271 - Oma_z*t265 + t244*t275 + t266*t276 + t267*t277
+                t286 = -Oma_x*t268 + Oma_y*t265 + t246*t275 + t269*t276 + t270*t277
+                t287 = e1_x*t284 + e1_y*t285 + e1_z*t286
+                t288 = e2_x*t284 + e2_y*t285 + e2_z*t286
+                t289 = e3_x*t284 + e3_y*t285 + e3_z*t286
+                t290 = 2*Ra_yx
+                t291 = 2*Ra_yy
+                t292 = 2*Ra_yz
+                t293 = e1_x*t290 + e1_y*t291 + e1_z*t292
+                t294 = -t293
+                t295 = t230*t294
+                t296 = e2_x*t290 + e2_y*t291 + e2_z*t292
+                t297 = -t296
+                t298 = t235*t297
+                t299 = e3_x*t290 + e3_y*t291 + e3_z*t292
+                t300 = -t299
+                t301 = t240*t300
+                t302 = 2*t263
+                t303 = 2*t266
+                t304 = 2*t269
+                t305 = e1_x*t302 + e1_y*t303 + e1_z*t304
+                t306 = -t305
+                t307 = e2_x*t302 + e2_y*t303 + e2_z*t304
+                t308 = -t307
+                t309 = e3_x*t302 + e3_y*t303 + e3_z*t304
+                t310 = -t309
+                t311 = 2*Ra_zx
+                t312 = 2*Ra_zy
+                t313 = 2*Ra_zz
+                t314 = e1_x*t311 + e1_y*t312 + e1_z*t313
+                t315 = -t314
+                t316 = t230*t315
+                t317 = e2_x*t311 + e2_y*t312 + e2_z*t313
+                t318 = -t317
+                t319 = t235*t318
+                t320 = e3_x*t311 + e3_y*t312 + e3_z*t313
+                t321 = -t320
+                t322 = t240*t321
+                t323 = 2*t264
+                t324 = 2*t267
+                t325 = 2*t270
+                t326 = e1_x*t323 + e1_y*t324 + e1_z*t325
+                t327 = -t326
+                t328 = e2_x*t323 + e2_y*t324 + e2_z*t325
+                t329 = -t328
+                t330 = e3_x*t323 + e3_y*t324 + e3_z*t325
+                t331 = -t330
+                t332 = t228*t230
+                t333 = t233*t235
+                t334 = t238*t240
+                t335 = t230*t293
+                t336 = t235*t296
+                t337 = t240*t299
+                t338 = t230*t314
+                t339 = t235*t317
+                t340 = t240*t320
+                t341 = 2*t219
+                t342 = -2*t218
+                t343 = e1_y*t341 + e1_z*t342
+                t344 = t230*t343
+                t345 = e2_y*t341 + e2_z*t342
+                t346 = t235*t345
+                t347 = e3_y*t341 + e3_z*t342
+                t348 = t240*t347
+                t349 = n_x*n_x
+                t350 = n_y*n_y
+                t351 = n_z*n_z
+                t352 = t350 + t351 - 1
+                t353 = -t349 - t352
+                t354 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t355 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t356 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t357 = t354*uthb_x + t355*uthb_y + t356*uthb_z - utha_x
+                t358 = Ra_xy*Rb_xx
+                t359 = Ra_yy*Rb_yx
+                t360 = Ra_zy*Rb_zx
+                t361 = t358 + t359 + t360
+                t362 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t363 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t364 = t361*uthb_x + t362*uthb_y + t363*uthb_z - utha_y
+                t365 = Ra_xz*Rb_xx
+                t366 = Ra_yz*Rb_yx
+                t367 = Ra_zz*Rb_zx
+                t368 = t365 + t366 + t367
+                t369 = Ra_xz*Rb_xy
+                t370 = Ra_yz*Rb_yy
+                t371 = Ra_zz*Rb_zy
+                t372 = t369 + t370 + t371
+                t373 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t374 = t368*uthb_x + t372*uthb_y + t373*uthb_z - utha_z
+                t375 = n_x*t357 + n_y*t364 + n_z*t374
+                t376 = n_y*t362
+                t377 = n_x*t361 + n_z*t363 + t376
+                t378 = n_x*t354
+                t379 = n_y*t355 + n_z*t356 + t378
+                t380 = t357*t377 - t364*t379
+                t381 = n_z*t373
+                t382 = n_x*t368 + n_y*t372 + t381
+                t383 = -t357*t382 + t374*t379
+                t384 = n_x*t375 + n_y*t380 - n_z*t383 + t353*t357
+                t385 = t364*t382 - t374*t377
+                t386 = -n_x*t380 + n_y*t375 + n_z*t385 + t353*t364
+                t387 = n_x*t383 - n_y*t385 + n_z*t375 + t353*t374
+                t388 = e1_x*t384 + e1_y*t386 + e1_z*t387
+                t389 = n_x*n_z
+                t390 = n_x*t382
+                t391 = -t390
+                t392 = -2*t389 - 2*t391
+                t393 = n_x*n_y
+                t394 = -t377
+                t395 = -2*n_x*t394 - 2*t393
+                t396 = -n_z*t382
+                t397 = 2*n_y*t394 + 2*t352 + 2*t396
+                t398 = (0.5)*ct_x
+                t399 = t398*(e1_x*t397 + e1_y*t395 + e1_z*t392)
+                t400 = e2_x*t384 + e2_y*t386 + e2_z*t387
+                t401 = (0.5)*ct_y
+                t402 = t401*(e2_x*t397 + e2_y*t395 + e2_z*t392)
+                t403 = e3_x*t384 + e3_y*t386 + e3_z*t387
+                t404 = (0.5)*ct_z
+                t405 = t404*(e3_x*t397 + e3_y*t395 + e3_z*t392)
+                t406 = 2*t271
+                t407 = -2*t268
+                t408 = e1_y*t406 + e1_z*t407
+                t409 = e2_y*t406 + e2_z*t407
+                t410 = e3_y*t406 + e3_z*t407
+                t411 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t412 = Ra_xz*t411
+                t413 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t414 = Ra_yz*t413
+                t415 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t416 = Ra_zz*t415
+                t417 = Rb_xx*t246
+                t418 = Rb_yx*t269
+                t419 = Rb_zx*t270
+                t420 = t412 + t414 + t416 + t417 + t418 + t419
+                t421 = t353*t420
+                t422 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t423 = Ra_xz*t422
+                t424 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t425 = Ra_yz*t424
+                t426 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t427 = Ra_zz*t426
+                t428 = Rb_xy*t246
+                t429 = Rb_yy*t269
+                t430 = Rb_zy*t270
+                t431 = t423 + t425 + t427 + t428 + t429 + t430
+                t432 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t433 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t434 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t435 = Ra_xz*t432 + Ra_yz*t433 + Ra_zz*t434 + Rb_xz*t246 + Rb_yz*t269 + Rb_zz*t270
+                t436 = n_z*t435
+                t437 = n_x*t420 + n_y*t431 + t436
+                t438 = n_x*t437
+                t439 = (0.5)*t421 + t438
+                t440 = 2*e1_z
+                t441 = Ra_xy*t411
+                t442 = Ra_yy*t413
+                t443 = Ra_zy*t415
+                t444 = Rb_xx*t244
+                t445 = Rb_yx*t266
+                t446 = Rb_zx*t267
+                t447 = t441 + t442 + t443 + t444 + t445 + t446
+                t448 = -t447
+                t449 = Ra_xy*t422 + Ra_yy*t424 + Ra_zy*t426 + Rb_xy*t244 + Rb_yy*t266 + Rb_zy*t267
+                t450 = -t449
+                t451 = Ra_xy*t432 + Ra_yy*t433 + Ra_zy*t434 + Rb_xz*t244 + Rb_yz*t266 + Rb_zz*t267
+                t452 = -t451
+                t453 = n_x*t448 + n_y*t450 + n_z*t452
+                t454 = -n_x*t453 + (0.5)*t353*t447
+                t455 = 2*e1_y
+                t456 = t435 + t449
+                t457 = (0.5)*t353
+                t458 = -n_z*t437
+                t459 = n_y*t453 - t456*t457 + t458
+                t460 = 2*e1_x
+                t461 = n_z*t377
+                t462 = -t461
+                t463 = n_y*t382 + t457*(-t363 + t369 + t370 + t371) + t462
+                t464 = n_z*t379 + t391 + t457*(t356 - t365 - t366 - t367)
+                t465 = n_y*t379
+                t466 = -t465
+                t467 = n_x*t377 + t457*(-t355 + t358 + t359 + t360) + t466
+                t468 = (0.5)*kt_x
+                t469 = t468*(e1_x*t463 + e1_y*t464 + e1_z*t467)
+                t470 = 2*e2_z
+                t471 = 2*e2_y
+                t472 = 2*e2_x
+                t473 = (0.5)*kt_y
+                t474 = t473*(e2_x*t463 + e2_y*t464 + e2_z*t467)
+                t475 = 2*e3_z
+                t476 = 2*e3_y
+                t477 = 2*e3_x
+                t478 = (0.5)*kt_z
+                t479 = t478*(e3_x*t463 + e3_y*t464 + e3_z*t467)
+                t480 = t353*t368
+                t481 = t390 + (0.5)*t480
+                t482 = -t361
+                t483 = -t362
+                t484 = -t363
+                t485 = n_x*t482 + n_y*t483 + n_z*t484
+                t486 = -n_x*t485 + (0.5)*t353*t361
+                t487 = t362 + t373
+                t488 = n_y*t485 + t396 - t457*t487
+                t489 = n_y*t449
+                t490 = n_x*t447 + n_z*t451 + t489
+                t491 = n_z*t490
+                t492 = n_y*t437 + t457*(t423 + t425 + t427 + t428 + t429 + t430 - t451) - t491
+                t493 = Ra_xx*t432 + Ra_yx*t433 + Ra_zx*t434 + Rb_xz*t242 + Rb_yz*t263 + Rb_zz*t264
+                t494 = Ra_xx*t411 + Ra_yx*t413 + Ra_zx*t415 + Rb_xx*t242 + Rb_yx*t263 + Rb_zx*t264
+                t495 = n_x*t494
+                t496 = Ra_xx*t422 + Ra_yx*t424 + Ra_zx*t426 + Rb_xy*t242 + Rb_yy*t263 + Rb_zy*t264
+                t497 = n_y*t496 + n_z*t493 + t495
+                t498 = n_z*t497 - t438 + t457*(-t412 - t414 - t416 - t417 - t418 - t419 + t493)
+                t499 = n_y*t497
+                t500 = n_x*t490 + t457*(t441 + t442 + t443 + t444 + t445 + t446 - t496) - t499
+                t501 = t468*(e1_x*t492 + e1_y*t498 + e1_z*t500)
+                t502 = t473*(e2_x*t492 + e2_y*t498 + e2_z*t500)
+                t503 = t478*(e3_x*t492 + e3_y*t498 + e3_z*t500)
+                t504 = -t490
+                t505 = n_x*t504
+                t506 = 2*n_y*t504 + 2*t458
+                t507 = -Oma_x + Omb_x*t354 + Omb_y*t355 + Omb_z*t356
+                t508 = -Oma_y + Omb_x*t361 + Omb_y*t362 + Omb_z*t363
+                t509 = -Oma_z + Omb_x*t368 + Omb_y*t372 + Omb_z*t373
+                t510 = n_x*t507 + n_y*t508 + n_z*t509
+                t511 = -t508
+                t512 = t377*t507 + t379*t511
+                t513 = -t507
+                t514 = t379*t509 + t382*t513
+                t515 = n_x*t510 + n_y*t512 - n_z*t514 + t353*t507
+                t516 = -t509
+                t517 = t377*t516 + t382*t508
+                t518 = -n_x*t512 + n_y*t510 + n_z*t517 + t353*t508
+                t519 = n_x*t514 - n_y*t517 + n_z*t510 + t353*t509
+                t520 = t398*(e1_x*t515 + e1_y*t518 + e1_z*t519)
+                t521 = t401*(e2_x*t515 + e2_y*t518 + e2_z*t519)
+                t522 = t404*(e3_x*t515 + e3_y*t518 + e3_z*t519)
+                t523 = Omb_x*t494 + Omb_y*t496 + Omb_z*t493
+                t524 = Omb_x*t447 + Omb_y*t449 + Omb_z*t451
+                t525 = Omb_x*t420 + Omb_y*t431 + Omb_z*t435
+                t526 = n_x*t523 + n_y*t524 + n_z*t525
+                t527 = t377*t523 - t379*t524 + t490*t507 + t497*t511
+                t528 = t379*t525 - t382*t523 + t437*t513 + t497*t509
+                t529 = n_x*t526 + n_y*t527 - n_z*t528 + t353*t523
+                t530 = -t377*t525 + t382*t524 + t437*t508 + t490*t516
+                t531 = -n_x*t527 + n_y*t526 + n_z*t530 + t353*t524
+                t532 = n_x*t528 - n_y*t530 + n_z*t526 + t353*t525
+                t533 = e1_x*t529 + e1_y*t531 + e1_z*t532
+                t534 = e2_x*t529 + e2_y*t531 + e2_z*t532
+                t535 = e3_x*t529 + e3_y*t531 + e3_z*t532
+                t536 = -t219
+                t537 = t221*t440 + t460*t536
+                t538 = t230*t537
+                t539 = t221*t470 + t472*t536
+                t540 = t235*t539
+                t541 = t221*t475 + t477*t536
+                t542 = t240*t541
+                t543 = -t393 - t466
+                t544 = n_y*n_z
+                t545 = -t382
+                t546 = -n_y*t545 - t544
+                t547 = -n_x*t379
+                t548 = t349 - 1
+                t549 = n_z*t545 + t351 + t547 + t548
+                t550 = t398*(t440*t546 + t455*t549 + t460*t543)
+                t551 = t401*(t470*t546 + t471*t549 + t472*t543)
+                t552 = t404*(t475*t546 + t476*t549 + t477*t543)
+                t553 = -t271
+                t554 = t265*t440 + t460*t553
+                t555 = t265*t470 + t472*t553
+                t556 = t265*t475 + t477*t553
+                t557 = t353*t496
+                t558 = t499 + (0.5)*t557
+                t559 = -t420
+                t560 = -t431
+                t561 = -t435
+                t562 = n_x*t559 + n_y*t560 + n_z*t561
+                t563 = -n_y*t562 + (0.5)*t353*t431
+                t564 = t435 + t494
+                t565 = n_x*t497
+                t566 = n_z*t562 - t457*t564 - t565
+                t567 = t353*t355
+                t568 = t465 + (0.5)*t567
+                t569 = -t368
+                t570 = -t372
+                t571 = -t373
+                t572 = n_x*t569 + n_y*t570 + n_z*t571
+                t573 = -n_y*t572 + (0.5)*t353*t372
+                t574 = t354 + t373
+                t575 = n_z*t572 - t457*t574 + t547
+                t576 = -t437
+                t577 = n_y*t576
+                t578 = n_z*t576 - t565
+                t579 = -t221
+                t580 = t218*t460 + t455*t579
+                t581 = t230*t580
+                t582 = t218*t472 + t471*t579
+                t583 = t235*t582
+                t584 = t218*t477 + t476*t579
+                t585 = t240*t584
+                t586 = -t462 - t544
+                t587 = -t379
+                t588 = -n_z*t587 - t389
+                t589 = -n_y*t377
+                t590 = n_x*t587 + t350 + t548 + t589
+                t591 = t398*(t440*t590 + t455*t586 + t460*t588)
+                t592 = t401*(t470*t590 + t471*t586 + t472*t588)
+                t593 = t404*(t475*t590 + t476*t586 + t477*t588)
+                t594 = -t265
+                t595 = t268*t460 + t455*t594
+                t596 = t268*t472 + t471*t594
+                t597 = t268*t477 + t476*t594
+                t598 = t353*t451
+                t599 = t491 + (0.5)*t598
+                t600 = -t494
+                t601 = -t496
+                t602 = -t493
+                t603 = n_x*t600 + n_y*t601 + n_z*t602
+                t604 = -n_z*t603 + (0.5)*t353*t493
+                t605 = t449 + t494
+                t606 = -n_y*t490
+                t607 = n_x*t603 - t457*t605 + t606
+                t608 = t353*t363
+                t609 = t461 + (0.5)*t608
+                t610 = -t354
+                t611 = -t355
+                t612 = -t356
+                t613 = n_x*t610 + n_y*t611 + n_z*t612
+                t614 = -n_z*t613 + (0.5)*t353*t356
+                t615 = t354 + t362
+                t616 = n_x*t613 - t457*t615 + t589
+                t617 = -t497
+                t618 = n_z*t617
+                t619 = n_x*t617 + t606
+                t620 = n_z*t368
+                t621 = n_y*t361 + t378 + t620
+                t622 = t354*t377 + t379*t482
+                t623 = t368*t379 + t382*t610
+                t624 = n_x*t621 + n_y*t622 - n_z*t623 + t353*t354
+                t625 = t361*t382 + t377*t569
+                t626 = -n_x*t622 + n_y*t621 + n_z*t625 + t353*t361
+                t627 = n_x*t623 - n_y*t625 + n_z*t621 + t480
+                t628 = t398*(t440*t627 + t455*t626 + t460*t624)
+                t629 = t401*(t470*t627 + t471*t626 + t472*t624)
+                t630 = t404*(t475*t627 + t476*t626 + t477*t624)
+                t631 = n_y*t493 + n_z*t601
+                t632 = n_y*t435 + n_z*t560
+                t633 = -n_x*t632 + n_z*t631 + t457*t601
+                t634 = n_y*t451
+                t635 = n_z*t450 + t634
+                t636 = n_x*t635 - n_y*t631 + t457*t602
+                t637 = n_y*t632 - n_z*t635 + t456*t457
+                t638 = n_y*t356 + n_z*t611
+                t639 = n_y*t373 + n_z*t570
+                t640 = -n_x*t639 + n_z*t638 + t457*t611
+                t641 = n_y*t363
+                t642 = n_z*t483 + t641
+                t643 = n_x*t642 - n_y*t638 + t457*t612
+                t644 = n_y*t639 - n_z*t642 + t457*t487
+                t645 = n_z*t420
+                t646 = n_y*t447 + t495 + t645
+                t647 = t354*t490 + t377*t494 + t379*t448 + t482*t497
+                t648 = t368*t497 + t379*t420 + t382*t600 + t437*t610
+                t649 = n_x*t646 + n_y*t647 - n_z*t648 + t353*t494
+                t650 = t361*t437 + t377*t559 + t382*t447 + t490*t569
+                t651 = -n_x*t647 + n_y*t646 + n_z*t650 + t353*t447
+                t652 = n_x*t648 - n_y*t650 + n_z*t646 + t421
+                t653 = n_x*t355
+                t654 = n_z*t372 + t376 + t653
+                t655 = t355*t377 + t379*t483
+                t656 = t372*t379 + t382*t611
+                t657 = n_x*t654 + n_y*t655 - n_z*t656 + t567
+                t658 = t362*t382 + t377*t570
+                t659 = -n_x*t655 + n_y*t654 + n_z*t658 + t353*t362
+                t660 = n_x*t656 - n_y*t658 + n_z*t654 + t353*t372
+                t661 = t398*(t440*t660 + t455*t659 + t460*t657)
+                t662 = t401*(t470*t660 + t471*t659 + t472*t657)
+                t663 = t404*(t475*t660 + t476*t659 + t477*t657)
+                t664 = n_x*t561 + t645
+                t665 = n_x*t452 + n_z*t447
+                t666 = n_y*t664 - n_z*t665 + t448*t457
+                t667 = n_x*t602 + n_z*t494
+                t668 = n_x*t665 - n_y*t667 + t452*t457
+                t669 = -n_x*t664 + n_z*t667 + t457*t564
+                t670 = n_x*t571 + t620
+                t671 = n_x*t484 + n_z*t361
+                t672 = n_y*t670 - n_z*t671 + t457*t482
+                t673 = n_x*t612 + n_z*t354
+                t674 = n_x*t671 - n_y*t673 + t457*t484
+                t675 = -n_x*t670 + n_z*t673 + t457*t574
+                t676 = n_x*t496
+                t677 = n_z*t431 + t489 + t676
+                t678 = t355*t490 + t377*t496 + t379*t450 + t483*t497
+                t679 = t372*t497 + t379*t431 + t382*t601 + t437*t611
+                t680 = n_x*t677 + n_y*t678 - n_z*t679 + t557
+                t681 = t362*t437 + t377*t560 + t382*t449 + t490*t570
+                t682 = -n_x*t678 + n_y*t677 + n_z*t681 + t353*t449
+                t683 = n_x*t679 - n_y*t681 + n_z*t677 + t353*t431
+                t684 = n_x*t356 + t381 + t641
+                t685 = t356*t377 + t379*t484
+                t686 = t373*t379 + t382*t612
+                t687 = n_x*t684 + n_y*t685 - n_z*t686 + t353*t356
+                t688 = t363*t382 + t377*t571
+                t689 = -n_x*t685 + n_y*t684 + n_z*t688 + t608
+                t690 = n_x*t686 - n_y*t688 + n_z*t684 + t353*t373
+                t691 = t398*(t440*t690 + t455*t689 + t460*t687)
+                t692 = t401*(t470*t690 + t471*t689 + t472*t687)
+                t693 = t404*(t475*t690 + t476*t689 + t477*t687)
+                t694 = n_x*t431 + n_y*t559
+                t695 = n_x*t449 + n_y*t448
+                t696 = n_y*t694 - n_z*t695 + t457*t559
+                t697 = n_y*t600 + t676
+                t698 = -n_x*t694 + n_z*t697 + t457*t560
+                t699 = n_x*t695 - n_y*t697 + t457*t605
+                t700 = n_x*t372 + n_y*t569
+                t701 = n_x*t362 + n_y*t482
+                t702 = n_y*t700 - n_z*t701 + t457*t569
+                t703 = n_y*t610 + t653
+                t704 = -n_x*t700 + n_z*t703 + t457*t570
+                t705 = n_x*t701 - n_y*t703 + t457*t615
+                t706 = n_x*t493 + t436 + t634
+                t707 = t356*t490 + t377*t493 + t379*t452 + t484*t497
+                t708 = t373*t497 + t379*t435 + t382*t602 + t437*t612
+                t709 = n_x*t706 + n_y*t707 - n_z*t708 + t353*t493
+                t710 = t363*t437 + t377*t561 + t382*t451 + t490*t571
+                t711 = -n_x*t707 + n_y*t706 + n_z*t710 + t598
+                t712 = n_x*t708 - n_y*t710 + n_z*t706 + t353*t435
+                J[column] = (c_damping*(t224*t231 + t232*t236 + t237*t241) +
+                    c_stiffness*(t229*t272 + t231*t287 + t234*t273 + t236*t288 + t239*t274 +
+                    t241*t289 + t249*t251 + t249*t281 + t253*t255 + t253*t282 + t257*t259 +
+                    t257*t283))
+                J[12 + column] = (c_damping*(t224*t295 + t232*t298 + t237*t301) +
+                    c_stiffness*(t251*t306 + t255*t308 + t259*t310 + t272*t294 + t273*t297 +
+                    t274*t300 + t281*t306 + t282*t308 + t283*t310 + t287*t295 + t288*t298 +
+                    t289*t301))
+                J[24 + column] = (c_damping*(t224*t316 + t232*t319 + t237*t322) +
+                    c_stiffness*(t251*t327 + t255*t329 + t259*t331 + t272*t315 + t273*t318 +
+                    t274*t321 + t281*t327 + t282*t329 + t283*t331 + t287*t316 + t288*t319 +
+                    t289*t322))
+                J[36 + column] = (c_damping*(t224*t332 + t232*t333 + t237*t334) +
+                    c_stiffness*(t228*t272 + t233*t273 + t238*t274 + t248*t251 + t248*t281 +
+                    t252*t255 + t252*t282 + t256*t259 + t256*t283 + t287*t332 + t288*t333 +
+                    t289*t334))
+                J[48 + column] = (c_damping*(t224*t335 + t232*t336 + t237*t337) +
+                    c_stiffness*(t251*t305 + t255*t307 + t259*t309 + t272*t293 + t273*t296 +
+                    t274*t299 + t281*t305 + t282*t307 + t283*t309 + t287*t335 + t288*t336 +
+                    t289*t337))
+                J[60 + column] = (c_damping*(t224*t338 + t232*t339 + t237*t340) +
+                    c_stiffness*(t251*t326 + t255*t328 + t259*t330 + t272*t314 + t273*t317 +
+                    t274*t320 + t281*t326 + t282*t328 + t283*t330 + t287*t338 + t288*t339 +
+                    t289*t340))
+                J[72 + column] = (c_damping*(t224*t344 + t232*t346 + t237*t348 + t388*t399 +
+                    t400*t402 + t403*t405) + c_stiffness*(t251*t408 + t255*t409 + t259*t410 +
+                    t272*t343 + t273*t345 + t274*t347 + t281*t408 + t282*t409 + t283*t410 +
+                    t287*t344 + t288*t346 + t289*t348 + t399*t533 + t402*t534 + t405*t535 +
+                    t469*(t439*t440 + t454*t455 + t459*t460) + t474*(t439*t470 + t454*t471 +
+                    t459*t472) + t479*(t439*t475 + t454*t476 + t459*t477) + t501*(t440*t481 +
+                    t455*t486 + t460*t488) + t502*(t470*t481 + t471*t486 + t472*t488) +
+                    t503*(t475*t481 + t476*t486 + t477*t488) + t520*(e1_x*t506 + t438*t440 -
+                    t455*t505) + t521*(e2_x*t506 + t438*t470 - t471*t505) + t522*(e3_x*t506 +
+                    t438*t475 - t476*t505)))
+                J[84 + column] = (c_damping*(t224*t538 + t232*t540 + t237*t542 + t388*t550 +
+                    t400*t551 + t403*t552) + c_stiffness*(t251*t554 + t255*t555 + t259*t556 +
+                    t272*t537 + t273*t539 + t274*t541 + t281*t554 + t282*t555 + t283*t556 +
+                    t287*t538 + t288*t540 + t289*t542 + t469*(t440*t563 + t455*t566 + t460*t558) +
+                    t474*(t470*t563 + t471*t566 + t472*t558) + t479*(t475*t563 + t476*t566 +
+                    t477*t558) + t501*(t440*t573 + t455*t575 + t460*t568) + t502*(t470*t573 +
+                    t471*t575 + t472*t568) + t503*(t475*t573 + t476*t575 + t477*t568) +
+                    t520*(-t440*t577 + t455*t578 + t460*t499) + t521*(-t470*t577 + t471*t578 +
+                    t472*t499) + t522*(-t475*t577 + t476*t578 + t477*t499) + t533*t550 + t534*t551
+                    + t535*t552))
+                J[96 + column] = (c_damping*(t224*t581 + t232*t583 + t237*t585 + t388*t591 +
+                    t400*t592 + t403*t593) + c_stiffness*(t251*t595 + t255*t596 + t259*t597 +
+                    t272*t580 + t273*t582 + t274*t584 + t281*t595 + t282*t596 + t283*t597 +
+                    t287*t581 + t288*t583 + t289*t585 + t469*(t440*t607 + t455*t599 + t460*t604) +
+                    t474*(t470*t607 + t471*t599 + t472*t604) + t479*(t475*t607 + t476*t599 +
+                    t477*t604) + t501*(t440*t616 + t455*t609 + t460*t614) + t502*(t470*t616 +
+                    t471*t609 + t472*t614) + t503*(t475*t616 + t476*t609 + t477*t614) +
+                    t520*(t440*t619 + t455*t491 - t460*t618) + t521*(t470*t619 + t471*t491 -
+                    t472*t618) + t522*(t475*t619 + t476*t491 - t477*t618) + t533*t591 + t534*t592
+                    + t535*t593))
+                J[108 + column] = (c_damping*(t388*t628 + t400*t629 + t403*t630) +
+                    c_stiffness*(t469*(t440*t636 + t455*t633 + t460*t637) + t474*(t470*t636 +
+                    t471*t633 + t472*t637) + t479*(t475*t636 + t476*t633 + t477*t637) +
+                    t501*(t440*t643 + t455*t640 + t460*t644) + t502*(t470*t643 + t471*t640 +
+                    t472*t644) + t503*(t475*t643 + t476*t640 + t477*t644) + t520*(t440*t652 +
+                    t455*t651 + t460*t649) + t521*(t470*t652 + t471*t651 + t472*t649) +
+                    t522*(t475*t652 + t476*t651 + t477*t649) + t533*t628 + t534*t629 + t535*t630))
+                J[120 + column] = (c_damping*(t388*t661 + t400*t662 + t403*t663) +
+                    c_stiffness*(t469*(t440*t668 + t455*t669 + t460*t666) + t474*(t470*t668 +
+                    t471*t669 + t472*t666) + t479*(t475*t668 + t476*t669 + t477*t666) +
+                    t501*(t440*t674 + t455*t675 + t460*t672) + t502*(t470*t674 + t471*t675 +
+                    t472*t672) + t503*(t475*t674 + t476*t675 + t477*t672) + t520*(t440*t683 +
+                    t455*t682 + t460*t680) + t521*(t470*t683 + t471*t682 + t472*t680) +
+                    t522*(t475*t683 + t476*t682 + t477*t680) + t533*t661 + t534*t662 + t535*t663))
+                J[132 + column] = (c_damping*(t388*t691 + t400*t692 + t403*t693) +
+                    c_stiffness*(t469*(t440*t699 + t455*t698 + t460*t696) + t474*(t470*t699 +
+                    t471*t698 + t472*t696) + t479*(t475*t699 + t476*t698 + t477*t696) +
+                    t501*(t440*t705 + t455*t704 + t460*t702) + t502*(t470*t705 + t471*t704 +
+                    t472*t702) + t503*(t475*t705 + t476*t704 + t477*t702) + t520*(t440*t712 +
+                    t455*t711 + t460*t709) + t521*(t470*t712 + t471*t711 + t472*t709) +
+                    t522*(t475*t712 + t476*t711 + t477*t709) + t533*t691 + t534*t692 + t535*t693))
     return OK

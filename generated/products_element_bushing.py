@@ -20,6 +20,7 @@ CONSTANTS = (
     Part("c", (3,), "damping along each axis"),
     Part("kt", (3,), "stiffness about each axis"),
     Part("ct", (3,), "damping about each axis"),
+    Part("n", (3,), "direction about which b turns freely, or zero"),
     Part("e1", (3,), "direction of an axis, in axes of body a"),
     Part("e2", (3,), "direction of an axis, in axes of body a"),
     Part("e3", (3,), "direction of an axis, in axes of body a"),
@@ -33,8 +34,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 0
-OPERATIONS = {"residual": (720, 0, 0, 0),
-              "column": (4704, 0, 0, 0)}
+OPERATIONS = {"residual": (1119, 0, 0, 0),
+              "column": (7076, 0, 0, 0)}
 KEPT = 0      # numbers kept between two calls
 
 
@@ -60,15 +61,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ct_x = constant[9]
         ct_y = constant[10]
         ct_z = constant[11]
-        e1_x = constant[12]
-        e1_y = constant[13]
-        e1_z = constant[14]
-        e2_x = constant[15]
-        e2_y = constant[16]
-        e2_z = constant[17]
-        e3_x = constant[18]
-        e3_y = constant[19]
-        e3_z = constant[20]
+        n_x = constant[12]
+        n_y = constant[13]
+        n_z = constant[14]
+        e1_x = constant[15]
+        e1_y = constant[16]
+        e1_z = constant[17]
+        e2_x = constant[18]
+        e2_y = constant[19]
+        e2_z = constant[20]
+        e3_x = constant[21]
+        e3_y = constant[22]
+        e3_z = constant[23]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -165,142 +169,191 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t56 = (0.5)*e1_y*t54 + (0.5)*e1_z*t55
             t57 = (0.5)*e2_y*t54 + (0.5)*e2_z*t55
             t58 = (0.5)*e3_y*t54 + (0.5)*e3_z*t55
-            t59 = Ra_xx*Rb_xx
-            t60 = Ra_yx*Rb_yx
-            t61 = Ra_zx*Rb_zx
+            t59 = Ra_xz*Rb_xx
+            t60 = Ra_yz*Rb_yx
+            t61 = Ra_zz*Rb_zx
             t62 = t59 + t60 + t61
-            t63 = Ra_xx*Rb_xy
-            t64 = Ra_yx*Rb_yy
-            t65 = Ra_zx*Rb_zy
-            t66 = t63 + t64 + t65
-            t67 = Ra_xx*Rb_xz
-            t68 = Ra_yx*Rb_yz
-            t69 = Ra_zx*Rb_zz
-            t70 = t67 + t68 + t69
-            t71 = -Oma_x + Omb_x*t62 + Omb_y*t66 + Omb_z*t70
-            t72 = Ra_xy*Rb_xx
-            t73 = Ra_yy*Rb_yx
-            t74 = Ra_zy*Rb_zx
-            t75 = t72 + t73 + t74
-            t76 = Ra_xy*Rb_xy
-            t77 = Ra_yy*Rb_yy
-            t78 = Ra_zy*Rb_zy
-            t79 = t76 + t77 + t78
-            t80 = Ra_xy*Rb_xz
-            t81 = Ra_yy*Rb_yz
-            t82 = Ra_zy*Rb_zz
-            t83 = t80 + t81 + t82
-            t84 = -Oma_y + Omb_x*t75 + Omb_y*t79 + Omb_z*t83
-            t85 = Ra_xz*Rb_xx
-            t86 = Ra_yz*Rb_yx
-            t87 = Ra_zz*Rb_zx
-            t88 = t85 + t86 + t87
-            t89 = Ra_xz*Rb_xy
-            t90 = Ra_yz*Rb_yy
-            t91 = Ra_zz*Rb_zy
-            t92 = t89 + t90 + t91
-            t93 = Ra_xz*Rb_xz
-            t94 = Ra_yz*Rb_yz
-            t95 = Ra_zz*Rb_zz
-            t96 = t93 + t94 + t95
-            t97 = -Oma_z + Omb_x*t88 + Omb_y*t92 + Omb_z*t96
-            t98 = ct_x*(e1_x*t71 + e1_y*t84 + e1_z*t97)
-            t99 = ct_y*(e2_x*t71 + e2_y*t84 + e2_z*t97)
-            t100 = ct_z*(e3_x*t71 + e3_y*t84 + e3_z*t97)
-            t101 = (0.5)*t72
-            t102 = (0.5)*t73
-            t103 = (0.5)*t74
-            t104 = t101 + t102 + t103
-            t105 = 2*t104
-            t106 = (0.5)*t85
-            t107 = (0.5)*t86
-            t108 = (0.5)*t87
-            t109 = t106 + t107 + t108
-            t110 = 2*t109
-            t111 = (0.5)*t93 + (0.5)*t94 + (0.5)*t95
-            t112 = (0.5)*t76 + (0.5)*t77 + (0.5)*t78
-            t113 = t111 + t112
-            t114 = -2*t113
-            t115 = (0.5)*t89
-            t116 = (0.5)*t90
-            t117 = (0.5)*t91
-            t118 = (0.5)*t80 + (0.5)*t81 + (0.5)*t82
-            t119 = t115 + t116 + t117 - t118
-            t120 = (0.5)*t67 + (0.5)*t68 + (0.5)*t69
-            t121 = -t106 - t107 - t108 + t120
-            t122 = (0.5)*t63 + (0.5)*t64 + (0.5)*t65
-            t123 = t101 + t102 + t103 - t122
-            t124 = (0.5)*kt_x*(e1_x*t119 + e1_y*t121 + e1_z*t123)
-            t125 = (0.5)*kt_y*(e2_x*t119 + e2_y*t121 + e2_z*t123)
-            t126 = (0.5)*kt_z*(e3_x*t119 + e3_y*t121 + e3_z*t123)
-            t127 = 2*t8
-            t128 = -2*t10
-            t129 = (0.5)*e1_x*t128 + (0.5)*e1_z*t127
-            t130 = (0.5)*e2_x*t128 + (0.5)*e2_z*t127
-            t131 = (0.5)*e3_x*t128 + (0.5)*e3_z*t127
-            t132 = 2*t122
-            t133 = t115 + t116 + t117
-            t134 = 2*t133
-            t135 = (0.5)*t59 + (0.5)*t60 + (0.5)*t61
-            t136 = t111 + t135
-            t137 = -2*t136
-            t138 = 2*t9
-            t139 = -2*t8
-            t140 = (0.5)*e1_x*t138 + (0.5)*e1_y*t139
-            t141 = (0.5)*e2_x*t138 + (0.5)*e2_y*t139
-            t142 = (0.5)*e3_x*t138 + (0.5)*e3_y*t139
-            t143 = 2*t120
-            t144 = 2*t118
-            t145 = t112 + t135
-            t146 = -2*t145
-            t147 = -2*t122
-            t148 = -2*t120
-            t149 = 2*t113
-            t150 = 2*t62
-            t151 = 2*t75
-            t152 = 2*t88
-            t153 = (0.5)*t98
-            t154 = (0.5)*t99
-            t155 = (0.5)*t100
-            t156 = -2*t104
-            t157 = -2*t118
-            t158 = 2*t136
-            t159 = 2*t66
-            t160 = 2*t79
-            t161 = 2*t92
-            t162 = -2*t109
-            t163 = -2*t133
-            t164 = 2*t145
-            t165 = 2*t70
-            t166 = 2*t83
-            t167 = 2*t96
+            t63 = n_x*n_x
+            t64 = n_y*n_y
+            t65 = n_z*n_z
+            t66 = t64 + t65 - 1
+            t67 = -t63 - t66
+            t68 = t62*t67
+            t69 = Ra_xz*Rb_xy
+            t70 = Ra_yz*Rb_yy
+            t71 = Ra_zz*Rb_zy
+            t72 = t69 + t70 + t71
+            t73 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t74 = n_z*t73
+            t75 = n_x*t62 + n_y*t72 + t74
+            t76 = n_x*t75
+            t77 = t68 + 2*t76
+            t78 = Ra_xy*Rb_xx
+            t79 = Ra_yy*Rb_yx
+            t80 = Ra_zy*Rb_zx
+            t81 = t78 + t79 + t80
+            t82 = -t81
+            t83 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t84 = -t83
+            t85 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t86 = -t85
+            t87 = n_x*t82 + n_y*t84 + n_z*t86
+            t88 = -2*n_x*t87 + t67*t81
+            t89 = -n_z*t75
+            t90 = t73 + t83
+            t91 = (0.5)*t67
+            t92 = 2*n_y*t87 + 2*t89 - 2*t90*t91
+            t93 = n_y*t83
+            t94 = n_x*t81 + n_z*t85 + t93
+            t95 = n_z*t94
+            t96 = -t95
+            t97 = n_y*t75 + t91*(t69 + t70 + t71 - t85) + t96
+            t98 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t99 = n_x*t98
+            t100 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t101 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t102 = n_y*t100 + n_z*t101 + t99
+            t103 = -t76
+            t104 = n_z*t102 + t103 + t91*(t101 - t59 - t60 - t61)
+            t105 = n_y*t102
+            t106 = -t105
+            t107 = n_x*t94 + t106 + t91*(-t100 + t78 + t79 + t80)
+            t108 = (0.5)*kt_x*(e1_x*t97 + e1_y*t104 + e1_z*t107)
+            t109 = (0.5)*kt_y*(e2_x*t97 + e2_y*t104 + e2_z*t107)
+            t110 = (0.5)*kt_z*(e3_x*t97 + e3_y*t104 + e3_z*t107)
+            t111 = n_x*n_z
+            t112 = -2*t103 - 2*t111
+            t113 = n_x*n_y
+            t114 = -t94
+            t115 = -2*n_x*t114 - 2*t113
+            t116 = 2*n_y*t114 + 2*t66 + 2*t89
+            t117 = -Oma_x + Omb_x*t98 + Omb_y*t100 + Omb_z*t101
+            t118 = -Oma_y + Omb_x*t81 + Omb_y*t83 + Omb_z*t85
+            t119 = -Oma_z + Omb_x*t62 + Omb_y*t72 + Omb_z*t73
+            t120 = n_x*t117 + n_y*t118 + n_z*t119
+            t121 = -t102*t118 + t117*t94
+            t122 = t102*t119 - t117*t75
+            t123 = n_x*t120 + n_y*t121 - n_z*t122 + t117*t67
+            t124 = t118*t75 - t119*t94
+            t125 = -n_x*t121 + n_y*t120 + n_z*t124 + t118*t67
+            t126 = n_x*t122 - n_y*t124 + n_z*t120 + t119*t67
+            t127 = (0.5)*ct_x*(e1_x*t123 + e1_y*t125 + e1_z*t126)
+            t128 = (0.5)*ct_y*(e2_x*t123 + e2_y*t125 + e2_z*t126)
+            t129 = (0.5)*ct_z*(e3_x*t123 + e3_y*t125 + e3_z*t126)
+            t130 = 2*t8
+            t131 = -2*t10
+            t132 = (0.5)*e1_x*t131 + (0.5)*e1_z*t130
+            t133 = (0.5)*e2_x*t131 + (0.5)*e2_z*t130
+            t134 = (0.5)*e3_x*t131 + (0.5)*e3_z*t130
+            t135 = t100*t67
+            t136 = 2*t105 + t135
+            t137 = -t62
+            t138 = -t72
+            t139 = -t73
+            t140 = n_x*t137 + n_y*t138 + n_z*t139
+            t141 = -2*n_y*t140 + t67*t72
+            t142 = -n_x*t102
+            t143 = t73 + t98
+            t144 = 2*n_z*t140 + 2*t142 - 2*t143*t91
+            t145 = -2*t106 - 2*t113
+            t146 = n_y*n_z
+            t147 = -t75
+            t148 = -2*n_y*t147 - 2*t146
+            t149 = t63 - 1
+            t150 = 2*n_z*t147 + 2*t142 + 2*t149 + 2*t65
+            t151 = 2*t9
+            t152 = -2*t8
+            t153 = (0.5)*e1_x*t151 + (0.5)*e1_y*t152
+            t154 = (0.5)*e2_x*t151 + (0.5)*e2_y*t152
+            t155 = (0.5)*e3_x*t151 + (0.5)*e3_y*t152
+            t156 = t67*t85
+            t157 = t156 + 2*t95
+            t158 = -t98
+            t159 = -t100
+            t160 = -t101
+            t161 = n_x*t158 + n_y*t159 + n_z*t160
+            t162 = -2*n_z*t161 + t101*t67
+            t163 = -n_y*t94
+            t164 = t83 + t98
+            t165 = 2*n_x*t161 + 2*t163 - 2*t164*t91
+            t166 = -2*t146 - 2*t96
+            t167 = -t102
+            t168 = -2*n_z*t167 - 2*t111
+            t169 = 2*n_x*t167 + 2*t149 + 2*t163 + 2*t64
+            t170 = n_y*t101 + n_z*t159
+            t171 = n_y*t73 + n_z*t138
+            t172 = -2*n_x*t171 + 2*n_z*t170 + 2*t159*t91
+            t173 = n_y*t85
+            t174 = n_z*t84 + t173
+            t175 = 2*n_x*t174 - 2*n_y*t170 + 2*t160*t91
+            t176 = 2*n_y*t171 - 2*n_z*t174 + 2*t90*t91
+            t177 = n_z*t62
+            t178 = n_y*t81 + t177 + t99
+            t179 = t102*t82 + t94*t98
+            t180 = t102*t62 + t158*t75
+            t181 = 2*n_x*t178 + 2*n_y*t179 - 2*n_z*t180 + 2*t67*t98
+            t182 = t137*t94 + t75*t81
+            t183 = -2*n_x*t179 + 2*n_y*t178 + 2*n_z*t182 + 2*t67*t81
+            t184 = 2*n_x*t180 - 2*n_y*t182 + 2*n_z*t178 + 2*t68
+            t185 = n_x*t139 + t177
+            t186 = n_x*t86 + n_z*t81
+            t187 = 2*n_y*t185 - 2*n_z*t186 + 2*t82*t91
+            t188 = n_x*t160 + n_z*t98
+            t189 = 2*n_x*t186 - 2*n_y*t188 + 2*t86*t91
+            t190 = -2*n_x*t185 + 2*n_z*t188 + 2*t143*t91
+            t191 = n_x*t100
+            t192 = n_z*t72 + t191 + t93
+            t193 = t100*t94 + t102*t84
+            t194 = t102*t72 + t159*t75
+            t195 = 2*n_x*t192 + 2*n_y*t193 - 2*n_z*t194 + 2*t135
+            t196 = t138*t94 + t75*t83
+            t197 = -2*n_x*t193 + 2*n_y*t192 + 2*n_z*t196 + 2*t67*t83
+            t198 = 2*n_x*t194 - 2*n_y*t196 + 2*n_z*t192 + 2*t67*t72
+            t199 = n_x*t72 + n_y*t137
+            t200 = n_x*t83 + n_y*t82
+            t201 = 2*n_y*t199 - 2*n_z*t200 + 2*t137*t91
+            t202 = n_y*t158 + t191
+            t203 = -2*n_x*t199 + 2*n_z*t202 + 2*t138*t91
+            t204 = 2*n_x*t200 - 2*n_y*t202 + 2*t164*t91
+            t205 = n_x*t101 + t173 + t74
+            t206 = t101*t94 + t102*t86
+            t207 = t102*t73 + t160*t75
+            t208 = 2*n_x*t205 + 2*n_y*t206 - 2*n_z*t207 + 2*t101*t67
+            t209 = t139*t94 + t75*t85
+            t210 = -2*n_x*t206 + 2*n_y*t205 + 2*n_z*t209 + 2*t156
+            t211 = 2*n_x*t207 - 2*n_y*t209 + 2*n_z*t205 + 2*t67*t73
             g[0] = t11*t4 + t13*t14 + t13*t25 + t16*t17 + t16*t26 + t24*t4
             g[1] = t11*t31 + t14*t33 + t17*t35 + t24*t31 + t25*t33 + t26*t35
             g[2] = t11*t40 + t14*t42 + t17*t44 + t24*t40 + t25*t42 + t26*t44
             g[3] = t11*t45 + t14*t46 + t17*t47 + t24*t45 + t25*t46 + t26*t47
             g[4] = t11*t48 + t14*t49 + t17*t50 + t24*t48 + t25*t49 + t26*t50
             g[5] = t11*t51 + t14*t52 + t17*t53 + t24*t51 + t25*t52 + t26*t53
-            g[6] = (-e1_x*t98 - e2_x*t99 - e3_x*t100 + t11*t56 + t124*(e1_x*t114 + e1_y*t105 +
-                e1_z*t110) + t125*(e2_x*t114 + e2_y*t105 + e2_z*t110) + t126*(e3_x*t114 +
-                e3_y*t105 + e3_z*t110) + t14*t57 + t17*t58 + t24*t56 + t25*t57 + t26*t58)
-            g[7] = (-e1_y*t98 - e2_y*t99 - e3_y*t100 + t11*t129 + t124*(e1_x*t132 + e1_y*t137 +
-                e1_z*t134) + t125*(e2_x*t132 + e2_y*t137 + e2_z*t134) + t126*(e3_x*t132 +
-                e3_y*t137 + e3_z*t134) + t129*t24 + t130*t14 + t130*t25 + t131*t17 + t131*t26)
-            g[8] = (-e1_z*t98 - e2_z*t99 - e3_z*t100 + t11*t140 + t124*(e1_x*t143 + e1_y*t144 +
-                e1_z*t146) + t125*(e2_x*t143 + e2_y*t144 + e2_z*t146) + t126*(e3_x*t143 +
-                e3_y*t144 + e3_z*t146) + t14*t141 + t140*t24 + t141*t25 + t142*t17 + t142*t26)
-            g[9] = (t124*(e1_x*t149 + e1_y*t147 + e1_z*t148) + t125*(e2_x*t149 + e2_y*t147 +
-                e2_z*t148) + t126*(e3_x*t149 + e3_y*t147 + e3_z*t148) + t153*(e1_x*t150 +
-                e1_y*t151 + e1_z*t152) + t154*(e2_x*t150 + e2_y*t151 + e2_z*t152) +
-                t155*(e3_x*t150 + e3_y*t151 + e3_z*t152))
-            g[10] = (t124*(e1_x*t156 + e1_y*t158 + e1_z*t157) + t125*(e2_x*t156 + e2_y*t158 +
-                e2_z*t157) + t126*(e3_x*t156 + e3_y*t158 + e3_z*t157) + t153*(e1_x*t159 +
-                e1_y*t160 + e1_z*t161) + t154*(e2_x*t159 + e2_y*t160 + e2_z*t161) +
-                t155*(e3_x*t159 + e3_y*t160 + e3_z*t161))
-            g[11] = (t124*(e1_x*t162 + e1_y*t163 + e1_z*t164) + t125*(e2_x*t162 + e2_y*t163 +
-                e2_z*t164) + t126*(e3_x*t162 + e3_y*t163 + e3_z*t164) + t153*(e1_x*t165 +
-                e1_y*t166 + e1_z*t167) + t154*(e2_x*t165 + e2_y*t166 + e2_z*t167) +
-                t155*(e3_x*t165 + e3_y*t166 + e3_z*t167))
+            g[6] = (t108*(e1_x*t92 + e1_y*t88 + e1_z*t77) + t109*(e2_x*t92 + e2_y*t88 + e2_z*t77)
+                + t11*t56 + t110*(e3_x*t92 + e3_y*t88 + e3_z*t77) + t127*(e1_x*t116 + e1_y*t115 +
+                e1_z*t112) + t128*(e2_x*t116 + e2_y*t115 + e2_z*t112) + t129*(e3_x*t116 +
+                e3_y*t115 + e3_z*t112) + t14*t57 + t17*t58 + t24*t56 + t25*t57 + t26*t58)
+            g[7] = (t108*(e1_x*t136 + e1_y*t144 + e1_z*t141) + t109*(e2_x*t136 + e2_y*t144 +
+                e2_z*t141) + t11*t132 + t110*(e3_x*t136 + e3_y*t144 + e3_z*t141) + t127*(e1_x*t145
+                + e1_y*t150 + e1_z*t148) + t128*(e2_x*t145 + e2_y*t150 + e2_z*t148) +
+                t129*(e3_x*t145 + e3_y*t150 + e3_z*t148) + t132*t24 + t133*t14 + t133*t25 +
+                t134*t17 + t134*t26)
+            g[8] = (t108*(e1_x*t162 + e1_y*t157 + e1_z*t165) + t109*(e2_x*t162 + e2_y*t157 +
+                e2_z*t165) + t11*t153 + t110*(e3_x*t162 + e3_y*t157 + e3_z*t165) + t127*(e1_x*t168
+                + e1_y*t166 + e1_z*t169) + t128*(e2_x*t168 + e2_y*t166 + e2_z*t169) +
+                t129*(e3_x*t168 + e3_y*t166 + e3_z*t169) + t14*t154 + t153*t24 + t154*t25 +
+                t155*t17 + t155*t26)
+            g[9] = (t108*(e1_x*t176 + e1_y*t172 + e1_z*t175) + t109*(e2_x*t176 + e2_y*t172 +
+                e2_z*t175) + t110*(e3_x*t176 + e3_y*t172 + e3_z*t175) + t127*(e1_x*t181 +
+                e1_y*t183 + e1_z*t184) + t128*(e2_x*t181 + e2_y*t183 + e2_z*t184) +
+                t129*(e3_x*t181 + e3_y*t183 + e3_z*t184))
+            g[10] = (t108*(e1_x*t187 + e1_y*t190 + e1_z*t189) + t109*(e2_x*t187 + e2_y*t190 +
+                e2_z*t189) + t110*(e3_x*t187 + e3_y*t190 + e3_z*t189) + t127*(e1_x*t195 +
+                e1_y*t197 + e1_z*t198) + t128*(e2_x*t195 + e2_y*t197 + e2_z*t198) +
+                t129*(e3_x*t195 + e3_y*t197 + e3_z*t198))
+            g[11] = (t108*(e1_x*t201 + e1_y*t203 + e1_z*t204) + t109*(e2_x*t201 + e2_y*t203 +
+                e2_z*t204) + t110*(e3_x*t201 + e3_y*t203 + e3_z*t204) + t127*(e1_x*t208 +
+                e1_y*t210 + e1_z*t211) + t128*(e2_x*t208 + e2_y*t210 + e2_z*t211) +
+                t129*(e3_x*t208 + e3_y*t210 + e3_z*t211))
         if task == ALONG:
             t0 = -vectors[19]*Ra_xz + vectors[20]*Ra_xy
             t1 = 2*e1_x
@@ -422,270 +475,367 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t117 = t102*t58
             t118 = t104*t61
             t119 = t106*t64
-            t120 = Ra_xx*Rb_xx
-            t121 = Ra_yx*Rb_yx
-            t122 = Ra_zx*Rb_zx
-            t123 = t120 + t121 + t122
-            t124 = Ra_xx*Rb_xy
-            t125 = Ra_yx*Rb_yy
-            t126 = Ra_zx*Rb_zy
-            t127 = t124 + t125 + t126
-            t128 = Ra_xx*Rb_xz
-            t129 = Ra_yx*Rb_yz
-            t130 = Ra_zx*Rb_zz
-            t131 = t128 + t129 + t130
-            t132 = -vectors[30] + vectors[33]*t123 + vectors[34]*t127 + vectors[35]*t131
-            t133 = Ra_xy*Rb_xx
-            t134 = Ra_yy*Rb_yx
-            t135 = Ra_zy*Rb_zx
-            t136 = t133 + t134 + t135
-            t137 = Ra_xy*Rb_xy
-            t138 = Ra_yy*Rb_yy
-            t139 = Ra_zy*Rb_zy
-            t140 = t137 + t138 + t139
-            t141 = Ra_xy*Rb_xz
-            t142 = Ra_yy*Rb_yz
-            t143 = Ra_zy*Rb_zz
-            t144 = t141 + t142 + t143
-            t145 = -vectors[31] + vectors[33]*t136 + vectors[34]*t140 + vectors[35]*t144
-            t146 = Ra_xz*Rb_xx
-            t147 = Ra_yz*Rb_yx
-            t148 = Ra_zz*Rb_zx
-            t149 = t146 + t147 + t148
-            t150 = Ra_xz*Rb_xy
-            t151 = Ra_yz*Rb_yy
-            t152 = Ra_zz*Rb_zy
-            t153 = t150 + t151 + t152
-            t154 = Ra_xz*Rb_xz
-            t155 = Ra_yz*Rb_yz
-            t156 = Ra_zz*Rb_zz
-            t157 = t154 + t155 + t156
-            t158 = -vectors[32] + vectors[33]*t149 + vectors[34]*t153 + vectors[35]*t157
-            t159 = e1_x*t132 + e1_y*t145 + e1_z*t158
-            t160 = ct_x*e1_x
-            t161 = e2_x*t132 + e2_y*t145 + e2_z*t158
-            t162 = ct_y*e2_x
-            t163 = e3_x*t132 + e3_y*t145 + e3_z*t158
-            t164 = ct_z*e3_x
-            t165 = -t40
-            t166 = t165*t5 + t3*t43
-            t167 = t165*t18 + t17*t43
-            t168 = t165*t25 + t24*t43
-            t169 = -t12
-            t170 = t13*t3 + t169*t5
-            t171 = t13*t17 + t169*t18
-            t172 = t13*t24 + t169*t25
-            t173 = t170*t58
-            t174 = t171*t61
-            t175 = t172*t64
-            t176 = -vectors[22]*Rb_xz + vectors[23]*Rb_xy
-            t177 = Ra_xy*t176
-            t178 = (0.5)*t177
-            t179 = -vectors[22]*Rb_yz + vectors[23]*Rb_yy
-            t180 = Ra_yy*t179
-            t181 = (0.5)*t180
-            t182 = -vectors[22]*Rb_zz + vectors[23]*Rb_zy
-            t183 = Ra_zy*t182
-            t184 = (0.5)*t183
-            t185 = Rb_xx*t2
-            t186 = (0.5)*t185
-            t187 = Rb_yx*t38
-            t188 = (0.5)*t187
-            t189 = Rb_zx*t39
-            t190 = (0.5)*t189
-            t191 = t178 + t181 + t184 + t186 + t188 + t190
-            t192 = Ra_xz*t176
-            t193 = (0.5)*t192
-            t194 = Ra_yz*t179
-            t195 = (0.5)*t194
-            t196 = Ra_zz*t182
-            t197 = (0.5)*t196
-            t198 = Rb_xx*t4
-            t199 = (0.5)*t198
-            t200 = Rb_yx*t41
-            t201 = (0.5)*t200
-            t202 = Rb_zx*t42
-            t203 = (0.5)*t202
-            t204 = t193 + t195 + t197 + t199 + t201 + t203
-            t205 = -vectors[21]*Rb_xy + vectors[22]*Rb_xx
-            t206 = Ra_xz*t205
-            t207 = -vectors[21]*Rb_yy + vectors[22]*Rb_yx
-            t208 = Ra_yz*t207
-            t209 = -vectors[21]*Rb_zy + vectors[22]*Rb_zx
-            t210 = Ra_zz*t209
-            t211 = Rb_xz*t4
-            t212 = Rb_yz*t41
-            t213 = Rb_zz*t42
-            t214 = (0.5)*t206 + (0.5)*t208 + (0.5)*t210 + (0.5)*t211 + (0.5)*t212 + (0.5)*t213
-            t215 = vectors[21]*Rb_xz - vectors[23]*Rb_xx
-            t216 = Ra_xy*t215
-            t217 = vectors[21]*Rb_yz - vectors[23]*Rb_yx
-            t218 = Ra_yy*t217
-            t219 = vectors[21]*Rb_zz - vectors[23]*Rb_zx
-            t220 = Ra_zy*t219
-            t221 = Rb_xy*t2
-            t222 = Rb_yy*t38
-            t223 = Rb_zy*t39
-            t224 = (0.5)*t216 + (0.5)*t218 + (0.5)*t220 + (0.5)*t221 + (0.5)*t222 + (0.5)*t223
-            t225 = t214 + t224
-            t226 = -t225
-            t227 = (0.5)*t150
-            t228 = (0.5)*t151
-            t229 = (0.5)*t152
-            t230 = (0.5)*t141 + (0.5)*t142 + (0.5)*t143
-            t231 = t227 + t228 + t229 - t230
-            t232 = (0.5)*t146
-            t233 = (0.5)*t147
-            t234 = (0.5)*t148
-            t235 = (0.5)*t128 + (0.5)*t129 + (0.5)*t130
-            t236 = -t232 - t233 - t234 + t235
-            t237 = (0.5)*t133
-            t238 = (0.5)*t134
-            t239 = (0.5)*t135
-            t240 = (0.5)*t124 + (0.5)*t125 + (0.5)*t126
-            t241 = t237 + t238 + t239 - t240
-            t242 = (0.5)*kt_x
-            t243 = t242*(e1_x*t231 + e1_y*t236 + e1_z*t241)
-            t244 = (0.5)*kt_y
-            t245 = t244*(e2_x*t231 + e2_y*t236 + e2_z*t241)
-            t246 = (0.5)*kt_z
-            t247 = t246*(e3_x*t231 + e3_y*t236 + e3_z*t241)
-            t248 = t237 + t238 + t239
-            t249 = t232 + t233 + t234
-            t250 = (0.5)*t154 + (0.5)*t155 + (0.5)*t156
-            t251 = (0.5)*t137 + (0.5)*t138 + (0.5)*t139
-            t252 = t250 + t251
-            t253 = -t252
-            t254 = Ra_xz*t215
-            t255 = (0.5)*t254
-            t256 = Ra_yz*t217
-            t257 = (0.5)*t256
-            t258 = Ra_zz*t219
-            t259 = (0.5)*t258
-            t260 = Rb_xy*t4
-            t261 = (0.5)*t260
-            t262 = Rb_yy*t41
-            t263 = (0.5)*t262
-            t264 = Rb_zy*t42
-            t265 = (0.5)*t264
-            t266 = Ra_xy*t205
-            t267 = Ra_yy*t207
-            t268 = Ra_zy*t209
-            t269 = Rb_xz*t2
-            t270 = Rb_yz*t38
-            t271 = Rb_zz*t39
-            t272 = (0.5)*t266 + (0.5)*t267 + (0.5)*t268 + (0.5)*t269 + (0.5)*t270 + (0.5)*t271
-            t273 = t255 + t257 + t259 + t261 + t263 + t265 - t272
-            t274 = Ra_xx*t205
-            t275 = Ra_yx*t207
-            t276 = Ra_zx*t209
-            t277 = Rb_xz*t0
-            t278 = Rb_yz*t35
-            t279 = Rb_zz*t36
-            t280 = (0.5)*t274 + (0.5)*t275 + (0.5)*t276 + (0.5)*t277 + (0.5)*t278 + (0.5)*t279
-            t281 = -t193 - t195 - t197 - t199 - t201 - t203 + t280
-            t282 = Ra_xx*t215
-            t283 = Ra_yx*t217
-            t284 = Ra_zx*t219
-            t285 = Rb_xy*t0
-            t286 = Rb_yy*t35
-            t287 = Rb_zy*t36
-            t288 = (0.5)*t282 + (0.5)*t283 + (0.5)*t284 + (0.5)*t285 + (0.5)*t286 + (0.5)*t287
-            t289 = t178 + t181 + t184 + t186 + t188 + t190 - t288
-            t290 = t242*(e1_x*t273 + e1_y*t281 + e1_z*t289)
-            t291 = t244*(e2_x*t273 + e2_y*t281 + e2_z*t289)
-            t292 = t246*(e3_x*t273 + e3_y*t281 + e3_z*t289)
-            t293 = Ra_xx*t176
-            t294 = Ra_yx*t179
-            t295 = Ra_zx*t182
-            t296 = Rb_xx*t0
-            t297 = Rb_yx*t35
-            t298 = Rb_zx*t36
-            t299 = t293 + t294 + t295 + t296 + t297 + t298
-            t300 = t282 + t283 + t284 + t285 + t286 + t287
-            t301 = t274 + t275 + t276 + t277 + t278 + t279
-            t302 = Omb_x*t299 + Omb_y*t300 + Omb_z*t301
-            t303 = t177 + t180 + t183 + t185 + t187 + t189
-            t304 = t216 + t218 + t220 + t221 + t222 + t223
-            t305 = t266 + t267 + t268 + t269 + t270 + t271
-            t306 = Omb_x*t303 + Omb_y*t304 + Omb_z*t305
-            t307 = t192 + t194 + t196 + t198 + t200 + t202
-            t308 = t254 + t256 + t258 + t260 + t262 + t264
-            t309 = t206 + t208 + t210 + t211 + t212 + t213
-            t310 = Omb_x*t307 + Omb_y*t308 + Omb_z*t309
-            t311 = e1_x*t302 + e1_y*t306 + e1_z*t310
-            t312 = e2_x*t302 + e2_y*t306 + e2_z*t310
-            t313 = e3_x*t302 + e3_y*t306 + e3_z*t310
-            t314 = ct_x*e1_y
-            t315 = ct_y*e2_y
-            t316 = ct_z*e3_y
-            t317 = -t43
-            t318 = t1*t317 + t37*t5
-            t319 = t16*t317 + t18*t37
-            t320 = t23*t317 + t25*t37
-            t321 = -t13
-            t322 = t1*t321 + t11*t5
-            t323 = t11*t18 + t16*t321
-            t324 = t11*t25 + t23*t321
-            t325 = t322*t58
-            t326 = t323*t61
-            t327 = t324*t64
-            t328 = t255 + t257 + t259 + t261 + t263 + t265
-            t329 = (0.5)*t293 + (0.5)*t294 + (0.5)*t295 + (0.5)*t296 + (0.5)*t297 + (0.5)*t298
-            t330 = t214 + t329
-            t331 = -t330
-            t332 = t227 + t228 + t229
-            t333 = (0.5)*t120 + (0.5)*t121 + (0.5)*t122
-            t334 = t250 + t333
-            t335 = -t334
-            t336 = ct_x*e1_z
-            t337 = ct_y*e2_z
-            t338 = ct_z*e3_z
-            t339 = -t37
-            t340 = t1*t40 + t3*t339
-            t341 = t16*t40 + t17*t339
-            t342 = t23*t40 + t24*t339
-            t343 = -t11
-            t344 = t1*t12 + t3*t343
-            t345 = t12*t16 + t17*t343
-            t346 = t12*t23 + t24*t343
-            t347 = t344*t58
-            t348 = t345*t61
-            t349 = t346*t64
-            t350 = t224 + t329
-            t351 = -t350
-            t352 = t251 + t333
-            t353 = -t352
-            t354 = (0.5)*ct_x
-            t355 = t354*(t1*t123 + t136*t3 + t149*t5)
-            t356 = (0.5)*ct_y
-            t357 = t356*(t123*t16 + t136*t17 + t149*t18)
-            t358 = (0.5)*ct_z
-            t359 = t358*(t123*t23 + t136*t24 + t149*t25)
-            t360 = -Oma_x + Omb_x*t123 + Omb_y*t127 + Omb_z*t131
-            t361 = -Oma_y + Omb_x*t136 + Omb_y*t140 + Omb_z*t144
-            t362 = -Oma_z + Omb_x*t149 + Omb_y*t153 + Omb_z*t157
-            t363 = t354*(e1_x*t360 + e1_y*t361 + e1_z*t362)
-            t364 = t356*(e2_x*t360 + e2_y*t361 + e2_z*t362)
-            t365 = t358*(e3_x*t360 + e3_y*t361 + e3_z*t362)
-            t366 = -t288
-            t367 = -t280
-            t368 = -t240
-            t369 = -t235
-            t370 = t354*(t1*t127 + t140*t3 + t153*t5)
-            t371 = t356*(t127*t16 + t140*t17 + t153*t18)
-            t372 = t358*(t127*t23 + t140*t24 + t153*t25)
-            t373 = -t191
-            t374 = -t272
-            t375 = -t248
-            t376 = -t230
-            t377 = t354*(t1*t131 + t144*t3 + t157*t5)
-            t378 = t356*(t131*t16 + t144*t17 + t157*t18)
-            t379 = t358*(t131*t23 + t144*t24 + t157*t25)
-            t380 = -t204
-            t381 = -t328
-            t382 = -t249
-            t383 = -t332
+            t120 = -t40
+            t121 = t120*t5 + t3*t43
+            t122 = t120*t18 + t17*t43
+            t123 = t120*t25 + t24*t43
+            t124 = -t12
+            t125 = t124*t5 + t13*t3
+            t126 = t124*t18 + t13*t17
+            t127 = t124*t25 + t13*t24
+            t128 = t125*t58
+            t129 = t126*t61
+            t130 = t127*t64
+            t131 = n_x*n_x
+            t132 = n_y*n_y
+            t133 = n_z*n_z
+            t134 = t132 + t133 - 1
+            t135 = -t131 - t134
+            t136 = -vectors[22]*Rb_xz + vectors[23]*Rb_xy
+            t137 = Ra_xz*t136
+            t138 = -vectors[22]*Rb_yz + vectors[23]*Rb_yy
+            t139 = Ra_yz*t138
+            t140 = -vectors[22]*Rb_zz + vectors[23]*Rb_zy
+            t141 = Ra_zz*t140
+            t142 = Rb_xx*t4
+            t143 = Rb_yx*t41
+            t144 = Rb_zx*t42
+            t145 = t137 + t139 + t141 + t142 + t143 + t144
+            t146 = t135*t145
+            t147 = vectors[21]*Rb_xz - vectors[23]*Rb_xx
+            t148 = Ra_xz*t147
+            t149 = vectors[21]*Rb_yz - vectors[23]*Rb_yx
+            t150 = Ra_yz*t149
+            t151 = vectors[21]*Rb_zz - vectors[23]*Rb_zx
+            t152 = Ra_zz*t151
+            t153 = Rb_xy*t4
+            t154 = Rb_yy*t41
+            t155 = Rb_zy*t42
+            t156 = t148 + t150 + t152 + t153 + t154 + t155
+            t157 = -vectors[21]*Rb_xy + vectors[22]*Rb_xx
+            t158 = -vectors[21]*Rb_yy + vectors[22]*Rb_yx
+            t159 = -vectors[21]*Rb_zy + vectors[22]*Rb_zx
+            t160 = Ra_xz*t157 + Ra_yz*t158 + Ra_zz*t159 + Rb_xz*t4 + Rb_yz*t41 + Rb_zz*t42
+            t161 = n_z*t160
+            t162 = n_x*t145 + n_y*t156 + t161
+            t163 = n_x*t162
+            t164 = (0.5)*t146 + t163
+            t165 = Ra_xy*t136
+            t166 = Ra_yy*t138
+            t167 = Ra_zy*t140
+            t168 = Rb_xx*t2
+            t169 = Rb_yx*t38
+            t170 = Rb_zx*t39
+            t171 = t165 + t166 + t167 + t168 + t169 + t170
+            t172 = -t171
+            t173 = Ra_xy*t147 + Ra_yy*t149 + Ra_zy*t151 + Rb_xy*t2 + Rb_yy*t38 + Rb_zy*t39
+            t174 = -t173
+            t175 = Ra_xy*t157 + Ra_yy*t158 + Ra_zy*t159 + Rb_xz*t2 + Rb_yz*t38 + Rb_zz*t39
+            t176 = -t175
+            t177 = n_x*t172 + n_y*t174 + n_z*t176
+            t178 = -n_x*t177 + (0.5)*t135*t171
+            t179 = t160 + t173
+            t180 = (0.5)*t135
+            t181 = -n_z*t162
+            t182 = n_y*t177 - t179*t180 + t181
+            t183 = Ra_xz*Rb_xx
+            t184 = Ra_yz*Rb_yx
+            t185 = Ra_zz*Rb_zx
+            t186 = t183 + t184 + t185
+            t187 = Ra_xz*Rb_xy
+            t188 = Ra_yz*Rb_yy
+            t189 = Ra_zz*Rb_zy
+            t190 = t187 + t188 + t189
+            t191 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t192 = n_z*t191
+            t193 = n_x*t186 + n_y*t190 + t192
+            t194 = Ra_xy*Rb_xx
+            t195 = Ra_yy*Rb_yx
+            t196 = Ra_zy*Rb_zx
+            t197 = t194 + t195 + t196
+            t198 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t199 = n_y*t198
+            t200 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t201 = n_x*t197 + n_z*t200 + t199
+            t202 = n_z*t201
+            t203 = -t202
+            t204 = n_y*t193 + t180*(t187 + t188 + t189 - t200) + t203
+            t205 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t206 = n_x*t205
+            t207 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t208 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t209 = n_y*t207 + n_z*t208 + t206
+            t210 = n_x*t193
+            t211 = -t210
+            t212 = n_z*t209 + t180*(-t183 - t184 - t185 + t208) + t211
+            t213 = n_y*t209
+            t214 = -t213
+            t215 = n_x*t201 + t180*(t194 + t195 + t196 - t207) + t214
+            t216 = (0.5)*kt_x
+            t217 = t216*(e1_x*t204 + e1_y*t212 + e1_z*t215)
+            t218 = (0.5)*kt_y
+            t219 = t218*(e2_x*t204 + e2_y*t212 + e2_z*t215)
+            t220 = (0.5)*kt_z
+            t221 = t220*(e3_x*t204 + e3_y*t212 + e3_z*t215)
+            t222 = -vectors[30] + vectors[33]*t205 + vectors[34]*t207 + vectors[35]*t208
+            t223 = -vectors[31] + vectors[33]*t197 + vectors[34]*t198 + vectors[35]*t200
+            t224 = -vectors[32] + vectors[33]*t186 + vectors[34]*t190 + vectors[35]*t191
+            t225 = n_x*t222 + n_y*t223 + n_z*t224
+            t226 = t201*t222 - t209*t223
+            t227 = -t193*t222 + t209*t224
+            t228 = n_x*t225 + n_y*t226 - n_z*t227 + t135*t222
+            t229 = t193*t223 - t201*t224
+            t230 = -n_x*t226 + n_y*t225 + n_z*t229 + t135*t223
+            t231 = n_x*t227 - n_y*t229 + n_z*t225 + t135*t224
+            t232 = e1_x*t228 + e1_y*t230 + e1_z*t231
+            t233 = n_x*n_z
+            t234 = -t211 - t233
+            t235 = n_x*n_y
+            t236 = -t201
+            t237 = -n_x*t236 - t235
+            t238 = -n_z*t193
+            t239 = n_y*t236 + t134 + t238
+            t240 = (0.5)*ct_x
+            t241 = t240*(t1*t239 + t234*t5 + t237*t3)
+            t242 = e2_x*t228 + e2_y*t230 + e2_z*t231
+            t243 = (0.5)*ct_y
+            t244 = t243*(t16*t239 + t17*t237 + t18*t234)
+            t245 = e3_x*t228 + e3_y*t230 + e3_z*t231
+            t246 = (0.5)*ct_z
+            t247 = t246*(t23*t239 + t234*t25 + t237*t24)
+            t248 = t135*t186
+            t249 = t210 + (0.5)*t248
+            t250 = -t197
+            t251 = -t198
+            t252 = -t200
+            t253 = n_x*t250 + n_y*t251 + n_z*t252
+            t254 = -n_x*t253 + (0.5)*t135*t197
+            t255 = t191 + t198
+            t256 = n_y*t253 - t180*t255 + t238
+            t257 = n_y*t173
+            t258 = n_x*t171 + n_z*t175 + t257
+            t259 = n_z*t258
+            t260 = n_y*t162 + t180*(t148 + t150 + t152 + t153 + t154 + t155 - t175) - t259
+            t261 = Ra_xx*t157 + Ra_yx*t158 + Ra_zx*t159 + Rb_xz*t0 + Rb_yz*t35 + Rb_zz*t36
+            t262 = Ra_xx*t136 + Ra_yx*t138 + Ra_zx*t140 + Rb_xx*t0 + Rb_yx*t35 + Rb_zx*t36
+            t263 = n_x*t262
+            t264 = Ra_xx*t147 + Ra_yx*t149 + Ra_zx*t151 + Rb_xy*t0 + Rb_yy*t35 + Rb_zy*t36
+            t265 = n_y*t264 + n_z*t261 + t263
+            t266 = n_z*t265 - t163 + t180*(-t137 - t139 - t141 - t142 - t143 - t144 + t261)
+            t267 = n_y*t265
+            t268 = n_x*t258 + t180*(t165 + t166 + t167 + t168 + t169 + t170 - t264) - t267
+            t269 = t216*(e1_x*t260 + e1_y*t266 + e1_z*t268)
+            t270 = t218*(e2_x*t260 + e2_y*t266 + e2_z*t268)
+            t271 = t220*(e3_x*t260 + e3_y*t266 + e3_z*t268)
+            t272 = -t258
+            t273 = n_x*t272
+            t274 = n_y*t272 + t181
+            t275 = -Oma_x + Omb_x*t205 + Omb_y*t207 + Omb_z*t208
+            t276 = -Oma_y + Omb_x*t197 + Omb_y*t198 + Omb_z*t200
+            t277 = -Oma_z + Omb_x*t186 + Omb_y*t190 + Omb_z*t191
+            t278 = n_x*t275 + n_y*t276 + n_z*t277
+            t279 = -t276
+            t280 = t201*t275 + t209*t279
+            t281 = -t275
+            t282 = t193*t281 + t209*t277
+            t283 = n_x*t278 + n_y*t280 - n_z*t282 + t135*t275
+            t284 = -t277
+            t285 = t193*t276 + t201*t284
+            t286 = -n_x*t280 + n_y*t278 + n_z*t285 + t135*t276
+            t287 = n_x*t282 - n_y*t285 + n_z*t278 + t135*t277
+            t288 = t240*(e1_x*t283 + e1_y*t286 + e1_z*t287)
+            t289 = t243*(e2_x*t283 + e2_y*t286 + e2_z*t287)
+            t290 = t246*(e3_x*t283 + e3_y*t286 + e3_z*t287)
+            t291 = Omb_x*t262 + Omb_y*t264 + Omb_z*t261
+            t292 = Omb_x*t171 + Omb_y*t173 + Omb_z*t175
+            t293 = Omb_x*t145 + Omb_y*t156 + Omb_z*t160
+            t294 = n_x*t291 + n_y*t292 + n_z*t293
+            t295 = t201*t291 - t209*t292 + t258*t275 + t265*t279
+            t296 = t162*t281 - t193*t291 + t209*t293 + t265*t277
+            t297 = n_x*t294 + n_y*t295 - n_z*t296 + t135*t291
+            t298 = t162*t276 + t193*t292 - t201*t293 + t258*t284
+            t299 = -n_x*t295 + n_y*t294 + n_z*t298 + t135*t292
+            t300 = n_x*t296 - n_y*t298 + n_z*t294 + t135*t293
+            t301 = e1_x*t297 + e1_y*t299 + e1_z*t300
+            t302 = e2_x*t297 + e2_y*t299 + e2_z*t300
+            t303 = e3_x*t297 + e3_y*t299 + e3_z*t300
+            t304 = -t43
+            t305 = t1*t304 + t37*t5
+            t306 = t16*t304 + t18*t37
+            t307 = t23*t304 + t25*t37
+            t308 = -t13
+            t309 = t1*t308 + t11*t5
+            t310 = t11*t18 + t16*t308
+            t311 = t11*t25 + t23*t308
+            t312 = t309*t58
+            t313 = t310*t61
+            t314 = t311*t64
+            t315 = t135*t264
+            t316 = t267 + (0.5)*t315
+            t317 = -t145
+            t318 = -t156
+            t319 = -t160
+            t320 = n_x*t317 + n_y*t318 + n_z*t319
+            t321 = -n_y*t320 + (0.5)*t135*t156
+            t322 = t160 + t262
+            t323 = n_x*t265
+            t324 = n_z*t320 - t180*t322 - t323
+            t325 = -t214 - t235
+            t326 = n_y*n_z
+            t327 = -t193
+            t328 = -n_y*t327 - t326
+            t329 = -n_x*t209
+            t330 = t131 - 1
+            t331 = n_z*t327 + t133 + t329 + t330
+            t332 = t240*(t1*t325 + t3*t331 + t328*t5)
+            t333 = t243*(t16*t325 + t17*t331 + t18*t328)
+            t334 = t246*(t23*t325 + t24*t331 + t25*t328)
+            t335 = t135*t207
+            t336 = t213 + (0.5)*t335
+            t337 = -t186
+            t338 = -t190
+            t339 = -t191
+            t340 = n_x*t337 + n_y*t338 + n_z*t339
+            t341 = -n_y*t340 + (0.5)*t135*t190
+            t342 = t191 + t205
+            t343 = n_z*t340 - t180*t342 + t329
+            t344 = -t162
+            t345 = n_y*t344
+            t346 = n_z*t344 - t323
+            t347 = -t37
+            t348 = t1*t40 + t3*t347
+            t349 = t16*t40 + t17*t347
+            t350 = t23*t40 + t24*t347
+            t351 = -t11
+            t352 = t1*t12 + t3*t351
+            t353 = t12*t16 + t17*t351
+            t354 = t12*t23 + t24*t351
+            t355 = t352*t58
+            t356 = t353*t61
+            t357 = t354*t64
+            t358 = t135*t175
+            t359 = t259 + (0.5)*t358
+            t360 = -t262
+            t361 = -t264
+            t362 = -t261
+            t363 = n_x*t360 + n_y*t361 + n_z*t362
+            t364 = -n_z*t363 + (0.5)*t135*t261
+            t365 = t173 + t262
+            t366 = -n_y*t258
+            t367 = n_x*t363 - t180*t365 + t366
+            t368 = -t203 - t326
+            t369 = -t209
+            t370 = -n_z*t369 - t233
+            t371 = -n_y*t201
+            t372 = n_x*t369 + t132 + t330 + t371
+            t373 = t240*(t1*t370 + t3*t368 + t372*t5)
+            t374 = t243*(t16*t370 + t17*t368 + t18*t372)
+            t375 = t246*(t23*t370 + t24*t368 + t25*t372)
+            t376 = t135*t200
+            t377 = t202 + (0.5)*t376
+            t378 = -t205
+            t379 = -t207
+            t380 = -t208
+            t381 = n_x*t378 + n_y*t379 + n_z*t380
+            t382 = -n_z*t381 + (0.5)*t135*t208
+            t383 = t198 + t205
+            t384 = n_x*t381 - t180*t383 + t371
+            t385 = -t265
+            t386 = n_z*t385
+            t387 = n_x*t385 + t366
+            t388 = n_y*t261 + n_z*t361
+            t389 = n_y*t160 + n_z*t318
+            t390 = -n_x*t389 + n_z*t388 + t180*t361
+            t391 = n_y*t175
+            t392 = n_z*t174 + t391
+            t393 = n_x*t392 - n_y*t388 + t180*t362
+            t394 = n_y*t389 - n_z*t392 + t179*t180
+            t395 = n_y*t208 + n_z*t379
+            t396 = n_y*t191 + n_z*t338
+            t397 = -n_x*t396 + n_z*t395 + t180*t379
+            t398 = n_y*t200
+            t399 = n_z*t251 + t398
+            t400 = n_x*t399 - n_y*t395 + t180*t380
+            t401 = n_y*t396 - n_z*t399 + t180*t255
+            t402 = n_z*t186
+            t403 = n_y*t197 + t206 + t402
+            t404 = t201*t205 + t209*t250
+            t405 = t186*t209 + t193*t378
+            t406 = n_x*t403 + n_y*t404 - n_z*t405 + t135*t205
+            t407 = t193*t197 + t201*t337
+            t408 = -n_x*t404 + n_y*t403 + n_z*t407 + t135*t197
+            t409 = n_x*t405 - n_y*t407 + n_z*t403 + t248
+            t410 = t240*(t1*t406 + t3*t408 + t409*t5)
+            t411 = t243*(t16*t406 + t17*t408 + t18*t409)
+            t412 = t246*(t23*t406 + t24*t408 + t25*t409)
+            t413 = n_z*t145
+            t414 = n_y*t171 + t263 + t413
+            t415 = t172*t209 + t201*t262 + t205*t258 + t250*t265
+            t416 = t145*t209 + t162*t378 + t186*t265 + t193*t360
+            t417 = n_x*t414 + n_y*t415 - n_z*t416 + t135*t262
+            t418 = t162*t197 + t171*t193 + t201*t317 + t258*t337
+            t419 = -n_x*t415 + n_y*t414 + n_z*t418 + t135*t171
+            t420 = n_x*t416 - n_y*t418 + n_z*t414 + t146
+            t421 = n_x*t319 + t413
+            t422 = n_x*t176 + n_z*t171
+            t423 = n_y*t421 - n_z*t422 + t172*t180
+            t424 = n_x*t362 + n_z*t262
+            t425 = n_x*t422 - n_y*t424 + t176*t180
+            t426 = -n_x*t421 + n_z*t424 + t180*t322
+            t427 = n_x*t339 + t402
+            t428 = n_x*t252 + n_z*t197
+            t429 = n_y*t427 - n_z*t428 + t180*t250
+            t430 = n_x*t380 + n_z*t205
+            t431 = n_x*t428 - n_y*t430 + t180*t252
+            t432 = -n_x*t427 + n_z*t430 + t180*t342
+            t433 = n_x*t207
+            t434 = n_z*t190 + t199 + t433
+            t435 = t201*t207 + t209*t251
+            t436 = t190*t209 + t193*t379
+            t437 = n_x*t434 + n_y*t435 - n_z*t436 + t335
+            t438 = t193*t198 + t201*t338
+            t439 = -n_x*t435 + n_y*t434 + n_z*t438 + t135*t198
+            t440 = n_x*t436 - n_y*t438 + n_z*t434 + t135*t190
+            t441 = t240*(t1*t437 + t3*t439 + t440*t5)
+            t442 = t243*(t16*t437 + t17*t439 + t18*t440)
+            t443 = t246*(t23*t437 + t24*t439 + t25*t440)
+            t444 = n_x*t264
+            t445 = n_z*t156 + t257 + t444
+            t446 = t174*t209 + t201*t264 + t207*t258 + t251*t265
+            t447 = t156*t209 + t162*t379 + t190*t265 + t193*t361
+            t448 = n_x*t445 + n_y*t446 - n_z*t447 + t315
+            t449 = t162*t198 + t173*t193 + t201*t318 + t258*t338
+            t450 = -n_x*t446 + n_y*t445 + n_z*t449 + t135*t173
+            t451 = n_x*t447 - n_y*t449 + n_z*t445 + t135*t156
+            t452 = n_x*t156 + n_y*t317
+            t453 = n_x*t173 + n_y*t172
+            t454 = n_y*t452 - n_z*t453 + t180*t317
+            t455 = n_y*t360 + t444
+            t456 = -n_x*t452 + n_z*t455 + t180*t318
+            t457 = n_x*t453 - n_y*t455 + t180*t365
+            t458 = n_x*t190 + n_y*t337
+            t459 = n_x*t198 + n_y*t250
+            t460 = n_y*t458 - n_z*t459 + t180*t337
+            t461 = n_y*t378 + t433
+            t462 = -n_x*t458 + n_z*t461 + t180*t338
+            t463 = n_x*t459 - n_y*t461 + t180*t383
+            t464 = n_x*t208 + t192 + t398
+            t465 = t201*t208 + t209*t252
+            t466 = t191*t209 + t193*t380
+            t467 = n_x*t464 + n_y*t465 - n_z*t466 + t135*t208
+            t468 = t193*t200 + t201*t339
+            t469 = -n_x*t465 + n_y*t464 + n_z*t468 + t376
+            t470 = n_x*t466 - n_y*t468 + n_z*t464 + t135*t191
+            t471 = t240*(t1*t467 + t3*t469 + t470*t5)
+            t472 = t243*(t16*t467 + t17*t469 + t18*t470)
+            t473 = t246*(t23*t467 + t24*t469 + t25*t470)
+            t474 = n_x*t261 + t161 + t391
+            t475 = t176*t209 + t201*t261 + t208*t258 + t252*t265
+            t476 = t160*t209 + t162*t380 + t191*t265 + t193*t362
+            t477 = n_x*t474 + n_y*t475 - n_z*t476 + t135*t261
+            t478 = t162*t200 + t175*t193 + t201*t319 + t258*t339
+            t479 = -n_x*t475 + n_y*t474 + n_z*t478 + t358
+            t480 = n_x*t476 - n_y*t478 + n_z*t474 + t135*t160
             vectors[0] = (t15*t7 + t20*t22 + t20*t73 + t27*t29 + t27*t74 + t31*t44 + t46*t47 +
                 t49*t50 + t57*t59 + t59*t78 + t60*t62 + t62*t79 + t63*t65 + t65*t80 + t7*t72)
             vectors[1] = (t15*t82 + t22*t84 + t29*t86 + t44*t88 + t47*t90 + t50*t92 + t57*t93 +
@@ -701,45 +851,48 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             vectors[5] = (t100*t29 + t100*t74 + t102*t44 + t104*t47 + t106*t50 + t117*t57 +
                 t117*t78 + t118*t60 + t118*t79 + t119*t63 + t119*t80 + t15*t96 + t22*t98 + t72*t96
                 + t73*t98)
-            vectors[6] = (t15*t166 - t159*t160 - t160*t311 - t161*t162 - t162*t312 - t163*t164 -
-                t164*t313 + t166*t72 + t167*t22 + t167*t73 + t168*t29 + t168*t74 + t170*t44 +
-                t171*t47 + t172*t50 + t173*t57 + t173*t78 + t174*t60 + t174*t79 + t175*t63 +
-                t175*t80 + t243*(t1*t226 + t191*t3 + t204*t5) + t245*(t16*t226 + t17*t191 +
-                t18*t204) + t247*(t191*t24 + t204*t25 + t226*t23) + t290*(t1*t253 + t248*t3 +
-                t249*t5) + t291*(t16*t253 + t17*t248 + t18*t249) + t292*(t23*t253 + t24*t248 +
-                t249*t25))
-            vectors[7] = (t15*t318 - t159*t314 - t161*t315 - t163*t316 + t22*t319 + t243*(t1*t288
-                + t3*t331 + t328*t5) + t245*(t16*t288 + t17*t331 + t18*t328) + t247*(t23*t288 +
-                t24*t331 + t25*t328) + t29*t320 + t290*(t1*t240 + t3*t335 + t332*t5) +
-                t291*(t16*t240 + t17*t335 + t18*t332) + t292*(t23*t240 + t24*t335 + t25*t332) -
-                t311*t314 - t312*t315 - t313*t316 + t318*t72 + t319*t73 + t320*t74 + t322*t44 +
-                t323*t47 + t324*t50 + t325*t57 + t325*t78 + t326*t60 + t326*t79 + t327*t63 +
-                t327*t80)
-            vectors[8] = (t15*t340 - t159*t336 - t161*t337 - t163*t338 + t22*t341 + t243*(t1*t280
-                + t272*t3 + t351*t5) + t245*(t16*t280 + t17*t272 + t18*t351) + t247*(t23*t280 +
-                t24*t272 + t25*t351) + t29*t342 + t290*(t1*t235 + t230*t3 + t353*t5) +
-                t291*(t16*t235 + t17*t230 + t18*t353) + t292*(t23*t235 + t230*t24 + t25*t353) -
-                t311*t336 - t312*t337 - t313*t338 + t340*t72 + t341*t73 + t342*t74 + t344*t44 +
-                t345*t47 + t346*t50 + t347*t57 + t347*t78 + t348*t60 + t348*t79 + t349*t63 +
-                t349*t80)
-            vectors[9] = (t159*t355 + t161*t357 + t163*t359 + t243*(t1*t225 + t3*t366 + t367*t5) +
-                t245*(t16*t225 + t17*t366 + t18*t367) + t247*(t225*t23 + t24*t366 + t25*t367) +
-                t290*(t1*t252 + t3*t368 + t369*t5) + t291*(t16*t252 + t17*t368 + t18*t369) +
-                t292*(t23*t252 + t24*t368 + t25*t369) + t311*t355 + t312*t357 + t313*t359 +
-                t363*(t1*t299 + t3*t303 + t307*t5) + t364*(t16*t299 + t17*t303 + t18*t307) +
-                t365*(t23*t299 + t24*t303 + t25*t307))
-            vectors[10] = (t159*t370 + t161*t371 + t163*t372 + t243*(t1*t373 + t3*t330 + t374*t5)
-                + t245*(t16*t373 + t17*t330 + t18*t374) + t247*(t23*t373 + t24*t330 + t25*t374) +
-                t290*(t1*t375 + t3*t334 + t376*t5) + t291*(t16*t375 + t17*t334 + t18*t376) +
-                t292*(t23*t375 + t24*t334 + t25*t376) + t311*t370 + t312*t371 + t313*t372 +
-                t363*(t1*t300 + t3*t304 + t308*t5) + t364*(t16*t300 + t17*t304 + t18*t308) +
-                t365*(t23*t300 + t24*t304 + t25*t308))
-            vectors[11] = (t159*t377 + t161*t378 + t163*t379 + t243*(t1*t380 + t3*t381 + t350*t5)
-                + t245*(t16*t380 + t17*t381 + t18*t350) + t247*(t23*t380 + t24*t381 + t25*t350) +
-                t290*(t1*t382 + t3*t383 + t352*t5) + t291*(t16*t382 + t17*t383 + t18*t352) +
-                t292*(t23*t382 + t24*t383 + t25*t352) + t311*t377 + t312*t378 + t313*t379 +
-                t363*(t1*t301 + t3*t305 + t309*t5) + t364*(t16*t301 + t17*t305 + t18*t309) +
-                t365*(t23*t301 + t24*t305 + t25*t309))
+            vectors[6] = (t121*t15 + t121*t72 + t122*t22 + t122*t73 + t123*t29 + t123*t74 +
+                t125*t44 + t126*t47 + t127*t50 + t128*t57 + t128*t78 + t129*t60 + t129*t79 +
+                t130*t63 + t130*t80 + t217*(t1*t182 + t164*t5 + t178*t3) + t219*(t16*t182 +
+                t164*t18 + t17*t178) + t221*(t164*t25 + t178*t24 + t182*t23) + t232*t241 +
+                t241*t301 + t242*t244 + t244*t302 + t245*t247 + t247*t303 + t269*(t1*t256 +
+                t249*t5 + t254*t3) + t270*(t16*t256 + t17*t254 + t18*t249) + t271*(t23*t256 +
+                t24*t254 + t249*t25) + t288*(t1*t274 + t163*t5 - t273*t3) + t289*(t16*t274 +
+                t163*t18 - t17*t273) + t290*(t163*t25 + t23*t274 - t24*t273))
+            vectors[7] = (t15*t305 + t217*(t1*t316 + t3*t324 + t321*t5) + t219*(t16*t316 +
+                t17*t324 + t18*t321) + t22*t306 + t221*(t23*t316 + t24*t324 + t25*t321) +
+                t232*t332 + t242*t333 + t245*t334 + t269*(t1*t336 + t3*t343 + t341*t5) +
+                t270*(t16*t336 + t17*t343 + t18*t341) + t271*(t23*t336 + t24*t343 + t25*t341) +
+                t288*(t1*t267 + t3*t346 - t345*t5) + t289*(t16*t267 + t17*t346 - t18*t345) +
+                t29*t307 + t290*(t23*t267 + t24*t346 - t25*t345) + t301*t332 + t302*t333 +
+                t303*t334 + t305*t72 + t306*t73 + t307*t74 + t309*t44 + t310*t47 + t311*t50 +
+                t312*t57 + t312*t78 + t313*t60 + t313*t79 + t314*t63 + t314*t80)
+            vectors[8] = (t15*t348 + t217*(t1*t364 + t3*t359 + t367*t5) + t219*(t16*t364 +
+                t17*t359 + t18*t367) + t22*t349 + t221*(t23*t364 + t24*t359 + t25*t367) +
+                t232*t373 + t242*t374 + t245*t375 + t269*(t1*t382 + t3*t377 + t384*t5) +
+                t270*(t16*t382 + t17*t377 + t18*t384) + t271*(t23*t382 + t24*t377 + t25*t384) +
+                t288*(-t1*t386 + t259*t3 + t387*t5) + t289*(-t16*t386 + t17*t259 + t18*t387) +
+                t29*t350 + t290*(-t23*t386 + t24*t259 + t25*t387) + t301*t373 + t302*t374 +
+                t303*t375 + t348*t72 + t349*t73 + t350*t74 + t352*t44 + t353*t47 + t354*t50 +
+                t355*t57 + t355*t78 + t356*t60 + t356*t79 + t357*t63 + t357*t80)
+            vectors[9] = (t217*(t1*t394 + t3*t390 + t393*t5) + t219*(t16*t394 + t17*t390 +
+                t18*t393) + t221*(t23*t394 + t24*t390 + t25*t393) + t232*t410 + t242*t411 +
+                t245*t412 + t269*(t1*t401 + t3*t397 + t400*t5) + t270*(t16*t401 + t17*t397 +
+                t18*t400) + t271*(t23*t401 + t24*t397 + t25*t400) + t288*(t1*t417 + t3*t419 +
+                t420*t5) + t289*(t16*t417 + t17*t419 + t18*t420) + t290*(t23*t417 + t24*t419 +
+                t25*t420) + t301*t410 + t302*t411 + t303*t412)
+            vectors[10] = (t217*(t1*t423 + t3*t426 + t425*t5) + t219*(t16*t423 + t17*t426 +
+                t18*t425) + t221*(t23*t423 + t24*t426 + t25*t425) + t232*t441 + t242*t442 +
+                t245*t443 + t269*(t1*t429 + t3*t432 + t431*t5) + t270*(t16*t429 + t17*t432 +
+                t18*t431) + t271*(t23*t429 + t24*t432 + t25*t431) + t288*(t1*t448 + t3*t450 +
+                t451*t5) + t289*(t16*t448 + t17*t450 + t18*t451) + t290*(t23*t448 + t24*t450 +
+                t25*t451) + t301*t441 + t302*t442 + t303*t443)
+            vectors[11] = (t217*(t1*t454 + t3*t456 + t457*t5) + t219*(t16*t454 + t17*t456 +
+                t18*t457) + t221*(t23*t454 + t24*t456 + t25*t457) + t232*t471 + t242*t472 +
+                t245*t473 + t269*(t1*t460 + t3*t462 + t463*t5) + t270*(t16*t460 + t17*t462 +
+                t18*t463) + t271*(t23*t460 + t24*t462 + t25*t463) + t288*(t1*t477 + t3*t479 +
+                t480*t5) + t289*(t16*t477 + t17*t479 + t18*t480) + t290*(t23*t477 + t24*t479 +
+                t25*t480) + t301*t471 + t302*t472 + t303*t473)
         if task == TRANSPOSED:
             t0 = Ra_xx*e1_x
             t1 = Ra_xy*e1_y
@@ -1029,542 +1182,969 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t285 = -0.5*t223
             t286 = -0.5*t225
             t287 = t103*t285 + t106*t286 + t109*t284 + t110*t285 + t111*t286 + t284*t98
-            t288 = Ra_xx*Rb_xx
-            t289 = Ra_yx*Rb_yx
-            t290 = Ra_zx*Rb_zx
-            t291 = t288 + t289 + t290
-            t292 = e1_x*t291
-            t293 = Ra_xy*Rb_xx
-            t294 = Ra_yy*Rb_yx
-            t295 = Ra_zy*Rb_zx
-            t296 = t293 + t294 + t295
-            t297 = e1_y*t296
-            t298 = Ra_xz*Rb_xx
-            t299 = Ra_yz*Rb_yx
-            t300 = Ra_zz*Rb_zx
-            t301 = t298 + t299 + t300
-            t302 = e1_z*t301
-            t303 = 2*t292 + 2*t297 + 2*t302
-            t304 = Ra_xz*Rb_xy
-            t305 = Ra_yz*Rb_yy
-            t306 = Ra_zz*Rb_zy
-            t307 = t304 + t305 + t306
-            t308 = Ra_xz*Rb_xz
-            t309 = Ra_yz*Rb_yz
-            t310 = Ra_zz*Rb_zz
-            t311 = t308 + t309 + t310
-            t312 = Omb_x*t301 + Omb_y*t307 + Omb_z*t311
-            t313 = -t296
-            t314 = Ra_xy*Rb_xy
-            t315 = Ra_yy*Rb_yy
-            t316 = Ra_zy*Rb_zy
-            t317 = t314 + t315 + t316
-            t318 = -t317
-            t319 = Ra_xy*Rb_xz
-            t320 = Ra_yy*Rb_yz
-            t321 = Ra_zy*Rb_zz
-            t322 = t319 + t320 + t321
-            t323 = -t322
-            t324 = Omb_x*t313 + Omb_y*t318 + Omb_z*t323
-            t325 = ct_x*(e1_y*t312 + e1_z*t324)
-            t326 = (0.5)*t325
-            t327 = 2*t301
-            t328 = 2*t313
-            t329 = Ra_xx*Rb_xy
-            t330 = Ra_yx*Rb_yy
-            t331 = Ra_zx*Rb_zy
-            t332 = t329 + t330 + t331
-            t333 = Ra_xx*Rb_xz
-            t334 = Ra_yx*Rb_yz
-            t335 = Ra_zx*Rb_zz
-            t336 = t333 + t334 + t335
-            t337 = Omb_x*t291 + Omb_y*t332 + Omb_z*t336
-            t338 = -Oma_x + t337
-            t339 = Omb_x*t296 + Omb_y*t317 + Omb_z*t322
-            t340 = -Oma_y + t339
-            t341 = -Oma_z + t312
-            t342 = (0.5)*ct_x
-            t343 = t342*(e1_x*t338 + e1_y*t340 + e1_z*t341)
-            t344 = e2_x*t291
-            t345 = e2_y*t296
-            t346 = e2_z*t301
-            t347 = 2*t344 + 2*t345 + 2*t346
-            t348 = ct_y*(e2_y*t312 + e2_z*t324)
-            t349 = (0.5)*t348
-            t350 = (0.5)*ct_y
-            t351 = t350*(e2_x*t338 + e2_y*t340 + e2_z*t341)
-            t352 = e3_x*t291
-            t353 = e3_y*t296
-            t354 = e3_z*t301
-            t355 = 2*t352 + 2*t353 + 2*t354
-            t356 = ct_z*(e3_y*t312 + e3_z*t324)
-            t357 = (0.5)*t356
-            t358 = (0.5)*ct_z
-            t359 = t358*(e3_x*t338 + e3_y*t340 + e3_z*t341)
-            t360 = (0.5)*t329 + (0.5)*t330 + (0.5)*t331
-            t361 = -t360
-            t362 = e1_y*t361
-            t363 = 2*t362
-            t364 = (0.5)*t333 + (0.5)*t334 + (0.5)*t335
-            t365 = -t364
-            t366 = e1_z*t365
-            t367 = 2*t366
-            t368 = (0.5)*t308 + (0.5)*t309 + (0.5)*t310
-            t369 = (0.5)*t314 + (0.5)*t315 + (0.5)*t316
-            t370 = t368 + t369
-            t371 = e1_x*t370
-            t372 = t363 + t367 + 2*t371
-            t373 = (0.5)*t293
-            t374 = (0.5)*t294
-            t375 = (0.5)*t295
-            t376 = t373 + t374 + t375
-            t377 = e1_y*t376
-            t378 = (0.5)*t298
-            t379 = (0.5)*t299
-            t380 = (0.5)*t300
-            t381 = t378 + t379 + t380
-            t382 = e1_z*t381
-            t383 = -t370
+            t288 = Oma_x*t76 + t95
+            t289 = -t93
+            t290 = -Oma_y*t76 + Oma_z*t73
+            t291 = c_x*(e1_x*t290 + e1_y*t288 + e1_z*t289)
+            t292 = c_y*(e2_x*t290 + e2_y*t288 + e2_z*t289)
+            t293 = c_z*(e3_x*t290 + e3_y*t288 + e3_z*t289)
+            t294 = t74 + t77
+            t295 = k_x*t294
+            t296 = t79 + t80
+            t297 = k_y*t296
+            t298 = t82 + t83
+            t299 = k_z*t298
+            t300 = e1_x*t73
+            t301 = e2_x*t73
+            t302 = e3_x*t73
+            t303 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+            t304 = n_z*n_z
+            t305 = n_x*n_x
+            t306 = n_y*n_y
+            t307 = t305 + t306 - 1
+            t308 = -t304 - t307
+            t309 = t303*t308
+            t310 = (0.5)*t309
+            t311 = Ra_xz*Rb_xx
+            t312 = Ra_yz*Rb_yx
+            t313 = Ra_zz*Rb_zx
+            t314 = t311 + t312 + t313
+            t315 = n_x*t314
+            t316 = Ra_xz*Rb_xy
+            t317 = Ra_yz*Rb_yy
+            t318 = Ra_zz*Rb_zy
+            t319 = t316 + t317 + t318
+            t320 = n_y*t319
+            t321 = n_z*t303
+            t322 = t315 + t320 + t321
+            t323 = n_z*t322
+            t324 = 2*t310 + 2*t323
+            t325 = -t319
+            t326 = n_y*t322
+            t327 = t308*t325 - 2*t326
+            t328 = Ra_xy*Rb_xx
+            t329 = Ra_yy*Rb_yx
+            t330 = Ra_zy*Rb_zx
+            t331 = t328 + t329 + t330
+            t332 = n_x*t331
+            t333 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+            t334 = n_y*t333
+            t335 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+            t336 = n_z*t335
+            t337 = t332 + t334 + t336
+            t338 = n_z*t337
+            t339 = -t338
+            t340 = -t316 - t317 - t318 + t335
+            t341 = (0.5)*t308
+            t342 = -t340*t341
+            t343 = t326 + t339 + t342
+            t344 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+            t345 = n_x*t344
+            t346 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+            t347 = n_y*t346
+            t348 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+            t349 = n_z*t348
+            t350 = t345 + t347 + t349
+            t351 = n_z*t350
+            t352 = n_x*t322
+            t353 = -t352
+            t354 = -t311 - t312 - t313 + t348
+            t355 = t341*t354
+            t356 = t351 + t353 + t355
+            t357 = n_x*t337
+            t358 = n_y*t350
+            t359 = -t358
+            t360 = -t328 - t329 - t330 + t346
+            t361 = -t341*t360
+            t362 = t357 + t359 + t361
+            t363 = (0.5)*kt_x
+            t364 = t363*(e1_x*t343 + e1_y*t356 + e1_z*t362)
+            t365 = (0.5)*kt_y
+            t366 = t365*(e2_x*t343 + e2_y*t356 + e2_z*t362)
+            t367 = (0.5)*kt_z
+            t368 = t367*(e3_x*t343 + e3_y*t356 + e3_z*t362)
+            t369 = t308*t335
+            t370 = (0.5)*t369
+            t371 = t338 + t370
+            t372 = e1_y*t371
+            t373 = 2*t372
+            t374 = -t344
+            t375 = n_x*t374
+            t376 = -t346
+            t377 = n_y*t376
+            t378 = -t348
+            t379 = n_z*t378
+            t380 = t377 + t379
+            t381 = t375 + t380
+            t382 = n_z*t381
+            t383 = (0.5)*t308*t348 - t382
             t384 = e1_x*t383
-            t385 = (0.5)*kt_x
-            t386 = t385*(t377 + t382 + t384)
-            t387 = e2_y*t361
-            t388 = 2*t387
-            t389 = e2_z*t365
-            t390 = 2*t389
-            t391 = e2_x*t370
-            t392 = t388 + t390 + 2*t391
-            t393 = e2_y*t376
-            t394 = e2_z*t381
-            t395 = e2_x*t383
-            t396 = (0.5)*kt_y
-            t397 = t396*(t393 + t394 + t395)
-            t398 = e3_y*t361
-            t399 = 2*t398
-            t400 = e3_z*t365
-            t401 = 2*t400
-            t402 = e3_x*t370
-            t403 = t399 + t401 + 2*t402
-            t404 = e3_y*t376
-            t405 = e3_z*t381
-            t406 = e3_x*t383
-            t407 = (0.5)*kt_z
-            t408 = t407*(t404 + t405 + t406)
-            t409 = (0.5)*t304
-            t410 = (0.5)*t305
-            t411 = (0.5)*t306
-            t412 = (0.5)*t319 + (0.5)*t320 + (0.5)*t321
-            t413 = -t409 - t410 - t411 + t412
-            t414 = -t413
-            t415 = e1_x*t414
-            t416 = t364 - t378 - t379 - t380
-            t417 = e1_y*t416
-            t418 = t360 - t373 - t374 - t375
-            t419 = -t418
-            t420 = e1_z*t419
-            t421 = t415 + t417 + t420
-            t422 = kt_x*t421
-            t423 = e2_x*t414
-            t424 = e2_y*t416
-            t425 = e2_z*t419
-            t426 = t423 + t424 + t425
-            t427 = kt_y*t426
-            t428 = e3_x*t414
-            t429 = e3_y*t416
-            t430 = e3_z*t419
-            t431 = t428 + t429 + t430
-            t432 = kt_z*t431
-            t433 = t415*t422 + t423*t427 + t428*t432
-            t434 = e1_x*t332
-            t435 = e1_y*t317
-            t436 = e1_z*t307
-            t437 = 2*t434 + 2*t435 + 2*t436
-            t438 = 2*t307
-            t439 = 2*t318
-            t440 = e2_x*t332
-            t441 = e2_y*t317
-            t442 = e2_z*t307
-            t443 = 2*t440 + 2*t441 + 2*t442
-            t444 = e3_x*t332
-            t445 = e3_y*t317
-            t446 = e3_z*t307
-            t447 = 2*t444 + 2*t445 + 2*t446
-            t448 = -t376
-            t449 = e1_x*t448
-            t450 = 2*t449
-            t451 = -t412
-            t452 = e1_z*t451
-            t453 = 2*t452
-            t454 = (0.5)*t288 + (0.5)*t289 + (0.5)*t290
-            t455 = t368 + t454
+            t385 = n_y*t337
+            t386 = -t385
+            t387 = t333 + t344
+            t388 = n_x*t381 - t341*t387 + t386
+            t389 = e1_z*t388
+            t390 = t373 + 2*t384 + 2*t389
+            t391 = t308*t314
+            t392 = (0.5)*t391
+            t393 = t352 + t392
+            t394 = e1_z*t393
+            t395 = -t331
+            t396 = n_x*t395
+            t397 = -t333
+            t398 = n_y*t397
+            t399 = -t335
+            t400 = n_z*t399
+            t401 = t398 + t400
+            t402 = t396 + t401
+            t403 = n_x*t402
+            t404 = (0.5)*t308*t331 - t403
+            t405 = e1_y*t404
+            t406 = -t323
+            t407 = t303 + t333
+            t408 = n_y*t402 - t341*t407 + t406
+            t409 = e1_x*t408
+            t410 = t363*(t394 + t405 + t409)
+            t411 = e2_y*t371
+            t412 = 2*t411
+            t413 = e2_x*t383
+            t414 = e2_z*t388
+            t415 = t412 + 2*t413 + 2*t414
+            t416 = e2_z*t393
+            t417 = e2_y*t404
+            t418 = e2_x*t408
+            t419 = t365*(t416 + t417 + t418)
+            t420 = e3_y*t371
+            t421 = 2*t420
+            t422 = e3_x*t383
+            t423 = e3_z*t388
+            t424 = t421 + 2*t422 + 2*t423
+            t425 = e3_z*t393
+            t426 = e3_y*t404
+            t427 = e3_x*t408
+            t428 = t367*(t425 + t426 + t427)
+            t429 = 2*e1_y
+            t430 = 2*t326
+            t431 = Omb_x*t344 + Omb_y*t346 + Omb_z*t348
+            t432 = -Oma_x + t431
+            t433 = Omb_x*t331 + Omb_y*t333 + Omb_z*t335
+            t434 = -Oma_y + t433
+            t435 = Omb_x*t314 + Omb_y*t319 + Omb_z*t303
+            t436 = -Oma_z + t435
+            t437 = n_x*t432 + n_y*t434 + n_z*t436
+            t438 = -t434
+            t439 = t337*t432 + t350*t438
+            t440 = -t432
+            t441 = t322*t440 + t350*t436
+            t442 = n_x*t437 + n_y*t439 - n_z*t441 + t308*t432
+            t443 = -t436
+            t444 = t322*t434 + t337*t443
+            t445 = -n_x*t439 + n_y*t437 + n_z*t444 + t308*t434
+            t446 = n_x*t441 - n_y*t444 + n_z*t437 + t308*t436
+            t447 = (0.5)*ct_x
+            t448 = t447*(e1_x*t442 + e1_y*t445 + e1_z*t446)
+            t449 = 2*t323
+            t450 = (0.5)*ct_y
+            t451 = t450*(e2_x*t442 + e2_y*t445 + e2_z*t446)
+            t452 = (0.5)*ct_z
+            t453 = t452*(e3_x*t442 + e3_y*t445 + e3_z*t446)
+            t454 = n_y*n_z
+            t455 = -t339 - t454
             t456 = e1_y*t455
-            t457 = t450 + t453 + 2*t456
-            t458 = e2_x*t448
-            t459 = 2*t458
-            t460 = e2_z*t451
-            t461 = 2*t460
-            t462 = e2_y*t455
-            t463 = t459 + t461 + 2*t462
-            t464 = e3_x*t448
-            t465 = 2*t464
-            t466 = e3_z*t451
-            t467 = 2*t466
-            t468 = e3_y*t455
-            t469 = t465 + t467 + 2*t468
-            t470 = -t381
-            t471 = e1_x*t470
-            t472 = 2*t471
-            t473 = 2*t451
-            t474 = -2*t368
-            t475 = t385*t421
-            t476 = e2_x*t470
-            t477 = 2*t476
-            t478 = t396*t426
-            t479 = e3_x*t470
-            t480 = 2*t479
-            t481 = t407*t431
-            t482 = (t475*(e1_y*t473 + e1_z*t474 + t472) + t478*(e2_y*t473 + e2_z*t474 + t477) +
-                t481*(e3_y*t473 + e3_z*t474 + t480))
-            t483 = e1_x*t336
-            t484 = e1_y*t322
-            t485 = e1_z*t311
-            t486 = 2*t483 + 2*t484 + 2*t485
-            t487 = 2*t311
-            t488 = 2*t323
-            t489 = e2_x*t336
-            t490 = e2_y*t322
-            t491 = e2_z*t311
-            t492 = 2*t489 + 2*t490 + 2*t491
-            t493 = e3_x*t336
-            t494 = e3_y*t322
-            t495 = e3_z*t311
-            t496 = 2*t493 + 2*t494 + 2*t495
-            t497 = t409 + t410 + t411
-            t498 = -t497
-            t499 = e1_y*t498
-            t500 = 2*t499
-            t501 = t369 + t454
-            t502 = e1_z*t501
-            t503 = t472 + t500 + 2*t502
-            t504 = e2_y*t498
-            t505 = 2*t504
-            t506 = e2_z*t501
-            t507 = t477 + t505 + 2*t506
-            t508 = e3_y*t498
-            t509 = 2*t508
-            t510 = e3_z*t501
-            t511 = t480 + t509 + 2*t510
-            t512 = 2*t376
-            t513 = 2*t369
-            t514 = e1_z*t497
-            t515 = 2*t514
-            t516 = e2_z*t497
+            t457 = n_x*n_z
+            t458 = -t350
+            t459 = n_z*t458
+            t460 = -t457 - t459
+            t461 = e1_x*t460
+            t462 = n_x*t458 + t307 + t386
+            t463 = e1_z*t462
+            t464 = 2*t456 + 2*t461 + 2*t463
+            t465 = Omb_x*t395 + Omb_y*t397 + Omb_z*t399
+            t466 = n_y*t435 + n_z*t465
+            t467 = t322*t432 - t350*t435
+            t468 = t350*t465 + t402*t440
+            t469 = n_x*t466 + n_y*t467 - n_z*t468
+            t470 = t322*t435 + t322*t443 - t337*t465 + t402*t434
+            t471 = -n_x*t467 + n_y*t466 + n_z*t470 + t308*t435
+            t472 = n_x*t468 - n_y*t470 + n_z*t466 + t308*t465
+            t473 = t447*(e1_x*t469 + e1_y*t471 + e1_z*t472)
+            t474 = e2_y*t455
+            t475 = e2_x*t460
+            t476 = e2_z*t462
+            t477 = 2*t474 + 2*t475 + 2*t476
+            t478 = t450*(e2_x*t469 + e2_y*t471 + e2_z*t472)
+            t479 = e3_y*t455
+            t480 = e3_x*t460
+            t481 = e3_z*t462
+            t482 = 2*t479 + 2*t480 + 2*t481
+            t483 = t452*(e3_x*t469 + e3_y*t471 + e3_z*t472)
+            t484 = t308*t397 - 2*t385
+            t485 = t308*t346
+            t486 = (0.5)*t485
+            t487 = t358 + t486
+            t488 = e1_x*t487
+            t489 = 2*t488
+            t490 = -t314
+            t491 = n_x*t490
+            t492 = n_y*t325
+            t493 = -t303
+            t494 = n_z*t493
+            t495 = t492 + t494
+            t496 = t491 + t495
+            t497 = n_y*t496
+            t498 = (0.5)*t308*t319 - t497
+            t499 = e1_z*t498
+            t500 = n_x*t350
+            t501 = -t500
+            t502 = t303 + t344
+            t503 = n_z*t496 - t341*t502 + t501
+            t504 = e1_y*t503
+            t505 = t489 + 2*t499 + 2*t504
+            t506 = e2_x*t487
+            t507 = 2*t506
+            t508 = e2_z*t498
+            t509 = e2_y*t503
+            t510 = t507 + 2*t508 + 2*t509
+            t511 = e3_x*t487
+            t512 = 2*t511
+            t513 = e3_z*t498
+            t514 = e3_y*t503
+            t515 = t512 + 2*t513 + 2*t514
+            t516 = -t402
             t517 = 2*t516
-            t518 = e3_z*t497
-            t519 = 2*t518
-            t520 = (t475*(e1_x*t512 + e1_y*t513 + t515) + t478*(e2_x*t512 + e2_y*t513 + t517) +
-                t481*(e3_x*t512 + e3_y*t513 + t519))
-            t521 = Oma_x*t76 + t95
-            t522 = -t93
-            t523 = -Oma_y*t76 + Oma_z*t73
-            t524 = c_x*(e1_x*t523 + e1_y*t521 + e1_z*t522)
-            t525 = c_y*(e2_x*t523 + e2_y*t521 + e2_z*t522)
-            t526 = c_z*(e3_x*t523 + e3_y*t521 + e3_z*t522)
-            t527 = t74 + t77
-            t528 = k_x*t527
-            t529 = t79 + t80
-            t530 = k_y*t529
-            t531 = t82 + t83
-            t532 = k_z*t531
-            t533 = e1_y*t412
-            t534 = 2*t533
-            t535 = -2*t369
-            t536 = e2_y*t412
-            t537 = 2*t536
-            t538 = e3_y*t412
-            t539 = 2*t538
-            t540 = e1_x*t360
-            t541 = 2*t540
-            t542 = -t455
-            t543 = e1_y*t542
-            t544 = t515 + t541 + 2*t543
-            t545 = e2_x*t360
-            t546 = 2*t545
-            t547 = e2_y*t542
-            t548 = t517 + t546 + 2*t547
-            t549 = e3_x*t360
-            t550 = 2*t549
-            t551 = e3_y*t542
-            t552 = t519 + t550 + 2*t551
-            t553 = e1_x*t73
-            t554 = e2_x*t73
-            t555 = e3_x*t73
-            t556 = 2*t368
-            t557 = 2*t498
-            t558 = e1_x*t364
-            t559 = 2*t558
-            t560 = -t501
-            t561 = e1_z*t560
-            t562 = t534 + t559 + 2*t561
-            t563 = e2_x*t364
-            t564 = 2*t563
-            t565 = e2_z*t560
-            t566 = t537 + t564 + 2*t565
-            t567 = e3_x*t364
-            t568 = 2*t567
-            t569 = e3_z*t560
-            t570 = t539 + t568 + 2*t569
-            t571 = 2*t377
-            t572 = 2*t382
-            t573 = 2*t384 + t571 + t572
-            t574 = 2*t393
-            t575 = 2*t394
-            t576 = 2*t395 + t574 + t575
-            t577 = 2*t404
-            t578 = 2*t405
-            t579 = 2*t406 + t577 + t578
-            t580 = 2*t76
-            t581 = e1_y*t580
-            t582 = 2*t114
-            t583 = e1_z*t582
-            t584 = (0.5)*t581 + (0.5)*t583
-            t585 = e2_y*t580
-            t586 = e2_z*t582
-            t587 = (0.5)*t585 + (0.5)*t586
-            t588 = e3_y*t580
-            t589 = e3_z*t582
-            t590 = (0.5)*t588 + (0.5)*t589
-            t591 = 2*t381
-            t592 = e1_y*t591
-            t593 = 2*t448
-            t594 = e1_z*t593
-            t595 = 2*t413
+            t518 = n_y*t517
+            t519 = n_z*t517
+            t520 = n_x*n_y
+            t521 = -t359 - t520
+            t522 = e1_x*t521
+            t523 = -t322
+            t524 = n_y*t523
+            t525 = -t454 - t524
+            t526 = e1_z*t525
+            t527 = t304 - 1
+            t528 = n_z*t523 + t305 + t501 + t527
+            t529 = e1_y*t528
+            t530 = 2*t522 + 2*t526 + 2*t529
+            t531 = e2_x*t521
+            t532 = e2_z*t525
+            t533 = e2_y*t528
+            t534 = 2*t531 + 2*t532 + 2*t533
+            t535 = e3_x*t521
+            t536 = e3_z*t525
+            t537 = e3_y*t528
+            t538 = 2*t535 + 2*t536 + 2*t537
+            t539 = 2*t76
+            t540 = e1_y*t539
+            t541 = 2*t114
+            t542 = e1_z*t541
+            t543 = (0.5)*t540 + (0.5)*t542
+            t544 = e2_y*t539
+            t545 = e2_z*t541
+            t546 = (0.5)*t544 + (0.5)*t545
+            t547 = e3_y*t539
+            t548 = e3_z*t541
+            t549 = (0.5)*t547 + (0.5)*t548
+            t550 = 2*t394
+            t551 = 2*t405 + 2*t409 + t550
+            t552 = 2*t416
+            t553 = 2*t417 + 2*t418 + t552
+            t554 = 2*t425
+            t555 = 2*t426 + 2*t427 + t554
+            t556 = n_x*t496
+            t557 = t308*t314 - 2*t556
+            t558 = t308*t395
+            t559 = (0.5)*t558
+            t560 = 2*t403 + 2*t559
+            t561 = t340*t341
+            t562 = n_z*t402
+            t563 = -t562
+            t564 = 2*t497 + 2*t561 + 2*t563
+            t565 = n_x*t523
+            t566 = 2*t403
+            t567 = 2*t524 + 2*t563
+            t568 = 2*t565
+            t569 = -t353 - t457
+            t570 = e1_z*t569
+            t571 = -t337
+            t572 = n_x*t571
+            t573 = -t520 - t572
+            t574 = e1_y*t573
+            t575 = n_y*t571 + t306 + t406 + t527
+            t576 = e1_x*t575
+            t577 = 2*t570 + 2*t574 + 2*t576
+            t578 = e2_z*t569
+            t579 = e2_y*t573
+            t580 = e2_x*t575
+            t581 = 2*t578 + 2*t579 + 2*t580
+            t582 = e3_z*t569
+            t583 = e3_y*t573
+            t584 = e3_x*t575
+            t585 = 2*t582 + 2*t583 + 2*t584
+            t586 = t350*t395
+            t587 = t337*t344 + t586
+            t588 = t322*t374
+            t589 = t314*t350 + t588
+            t590 = n_y*t331
+            t591 = n_z*t314
+            t592 = t345 + t590 + t591
+            t593 = t308*t344
+            t594 = n_x*t592 + t593
+            t595 = n_y*t587 - n_z*t589 + t594
             t596 = e1_x*t595
-            t597 = e2_y*t591
-            t598 = e2_z*t593
-            t599 = e2_x*t595
-            t600 = e3_y*t591
-            t601 = e3_z*t593
-            t602 = e3_x*t595
-            t603 = -t301
-            t604 = -t307
-            t605 = -t311
-            t606 = Omb_x*t603 + Omb_y*t604 + Omb_z*t605
-            t607 = ct_x*(e1_x*t606 + e1_z*t337)
-            t608 = (0.5)*t607
-            t609 = 2*t332
-            t610 = 2*t604
-            t611 = ct_y*(e2_x*t606 + e2_z*t337)
-            t612 = (0.5)*t611
-            t613 = ct_z*(e3_x*t606 + e3_z*t337)
-            t614 = (0.5)*t613
-            t615 = t385*(t514 + t540 + t543)
-            t616 = t396*(t516 + t545 + t547)
-            t617 = t407*(t518 + t549 + t551)
-            t618 = t417*t422 + t424*t427 + t429*t432
-            t619 = 2*t336
-            t620 = 2*t605
-            t621 = -2*t454
-            t622 = 2*t470
-            t623 = (t475*(e1_x*t621 + e1_z*t622 + t363) + t478*(e2_x*t621 + e2_z*t622 + t388) +
-                t481*(e3_x*t621 + e3_z*t622 + t399))
-            t624 = 2*t291
-            t625 = 2*t603
-            t626 = 2*t497
-            t627 = (t475*(e1_y*t626 + e1_z*t556 + t559) + t478*(e2_y*t626 + e2_z*t556 + t564) +
-                t481*(e3_y*t626 + e3_z*t556 + t568))
-            t628 = Oma_y*t114 + t88
-            t629 = -t96
-            t630 = Oma_x*t91 - Oma_z*t114
-            t631 = c_x*(e1_x*t629 + e1_y*t630 + e1_z*t628)
-            t632 = c_y*(e2_x*t629 + e2_y*t630 + e2_z*t628)
-            t633 = c_z*(e3_x*t629 + e3_y*t630 + e3_z*t628)
-            t634 = t113 + t115
-            t635 = k_x*t634
-            t636 = t117 + t118
-            t637 = k_y*t636
-            t638 = t120 + t121
-            t639 = k_z*t638
-            t640 = e1_y*t91
-            t641 = e2_y*t91
-            t642 = e3_y*t91
-            t643 = 2*t365
-            t644 = 2*t454
-            t645 = 2*t132
+            t597 = t337*t490
+            t598 = t322*t331 + t597
+            t599 = t308*t331
+            t600 = n_y*t592 + t599
+            t601 = -n_x*t587 + n_z*t598 + t600
+            t602 = e1_y*t601
+            t603 = n_z*t592 + t391
+            t604 = n_x*t589 - n_y*t598 + t603
+            t605 = e1_z*t604
+            t606 = 2*t596 + 2*t602 + 2*t605
+            t607 = n_y*t314
+            t608 = n_z*t395
+            t609 = t607 + t608
+            t610 = t322*t344 + t350*t490
+            t611 = t374*t402 + t586
+            t612 = 2*n_x*t609 + 2*n_y*t610 - 2*n_z*t611
+            t613 = t331*t337
+            t614 = t314*t322
+            t615 = t322*t490 + t331*t402 + t613 + t614
+            t616 = -2*n_x*t610 + 2*n_y*t609 + 2*n_z*t615 + 2*t391
+            t617 = 2*n_x*t611 - 2*n_y*t615 + 2*n_z*t609 + 2*t558
+            t618 = e2_x*t595
+            t619 = e2_y*t601
+            t620 = e2_z*t604
+            t621 = 2*t618 + 2*t619 + 2*t620
+            t622 = e3_x*t595
+            t623 = e3_y*t601
+            t624 = e3_z*t604
+            t625 = 2*t622 + 2*t623 + 2*t624
+            t626 = n_y*t348
+            t627 = n_z*t376 + t626
+            t628 = n_y*t303
+            t629 = n_z*t325
+            t630 = t628 + t629
+            t631 = n_x*t630
+            t632 = t308*t376
+            t633 = (0.5)*t632
+            t634 = n_z*t627 - t631 + t633
+            t635 = e1_y*t634
+            t636 = n_y*t335
+            t637 = n_z*t397
+            t638 = t636 + t637
+            t639 = n_y*t627
+            t640 = t308*t378
+            t641 = (0.5)*t640
+            t642 = n_x*t638 - t639 + t641
+            t643 = e1_z*t642
+            t644 = n_z*t638
+            t645 = n_y*t630 + t341*t407 - t644
             t646 = e1_x*t645
-            t647 = (0.5)*t583 + (0.5)*t646
-            t648 = e2_x*t645
-            t649 = (0.5)*t586 + (0.5)*t648
-            t650 = e3_x*t645
-            t651 = (0.5)*t589 + (0.5)*t650
-            t652 = e1_x*t557
-            t653 = 2*t360
-            t654 = e1_z*t653
-            t655 = -2*t416
-            t656 = e1_y*t655
-            t657 = e2_x*t557
-            t658 = e2_z*t653
-            t659 = e2_y*t655
-            t660 = e3_x*t557
-            t661 = e3_z*t653
-            t662 = e3_y*t655
-            t663 = -t291
-            t664 = -t332
-            t665 = -t336
-            t666 = Omb_x*t663 + Omb_y*t664 + Omb_z*t665
-            t667 = ct_x*(e1_x*t339 + e1_y*t666)
-            t668 = (0.5)*t667
-            t669 = 2*t322
-            t670 = 2*t665
-            t671 = ct_y*(e2_x*t339 + e2_y*t666)
-            t672 = (0.5)*t671
-            t673 = ct_z*(e3_x*t339 + e3_y*t666)
-            t674 = (0.5)*t673
-            t675 = t385*(t533 + t558 + t561)
-            t676 = t396*(t536 + t563 + t565)
-            t677 = t407*(t538 + t567 + t569)
-            t678 = t420*t422 + t425*t427 + t430*t432
-            t679 = 2*t317
-            t680 = 2*t664
-            t681 = 2*t364
-            t682 = (t475*(e1_x*t644 + e1_z*t681 + t571) + t478*(e2_x*t644 + e2_z*t681 + t574) +
-                t481*(e3_x*t644 + e3_z*t681 + t577))
-            t683 = 2*t296
-            t684 = 2*t663
-            t685 = 2*t361
-            t686 = (t475*(e1_x*t685 + e1_y*t535 + t453) + t478*(e2_x*t685 + e2_y*t535 + t461) +
-                t481*(e3_x*t685 + e3_y*t535 + t467))
-            t687 = Oma_z*t132 + t92
-            t688 = -t89
-            t689 = -Oma_x*t132 + Oma_y*t75
-            t690 = c_x*(e1_x*t687 + e1_y*t688 + e1_z*t689)
-            t691 = c_y*(e2_x*t687 + e2_y*t688 + e2_z*t689)
-            t692 = c_z*(e3_x*t687 + e3_y*t688 + e3_z*t689)
-            t693 = t131 + t133
-            t694 = k_x*t693
-            t695 = t135 + t136
-            t696 = k_y*t695
-            t697 = t138 + t139
-            t698 = k_z*t697
-            t699 = e1_z*t75
-            t700 = e2_z*t75
-            t701 = e3_z*t75
-            t702 = (0.5)*t581 + (0.5)*t646
-            t703 = (0.5)*t585 + (0.5)*t648
-            t704 = (0.5)*t588 + (0.5)*t650
-            t705 = 2*t412
-            t706 = e1_x*t705
-            t707 = e1_y*t643
-            t708 = 2*t418
-            t709 = e1_z*t708
-            t710 = e2_x*t705
-            t711 = e2_y*t643
-            t712 = e2_z*t708
-            t713 = e3_x*t705
-            t714 = e3_y*t643
-            t715 = e3_z*t708
-            t716 = t385*(t362 + t366 + t371)
-            t717 = t396*(t387 + t389 + t391)
-            t718 = t407*(t398 + t400 + t402)
-            t719 = Omb_y*t336 + Omb_z*t664
-            t720 = Omb_y*t322 + Omb_z*t318
-            t721 = Omb_y*t311 + Omb_z*t604
-            t722 = ct_x*(e1_x*t719 + e1_y*t720 + e1_z*t721)
-            t723 = ct_y*(e2_x*t719 + e2_y*t720 + e2_z*t721)
-            t724 = ct_z*(e3_x*t719 + e3_y*t720 + e3_z*t721)
-            t725 = (0.5)*t722
-            t726 = (0.5)*t723
-            t727 = (0.5)*t724
-            t728 = t385*(t449 + t452 + t456)
-            t729 = t396*(t458 + t460 + t462)
-            t730 = t407*(t464 + t466 + t468)
-            t731 = Omb_x*t665 + Omb_z*t291
-            t732 = Omb_x*t323 + Omb_z*t296
-            t733 = Omb_x*t605 + Omb_z*t301
-            t734 = ct_x*(e1_x*t731 + e1_y*t732 + e1_z*t733)
-            t735 = ct_y*(e2_x*t731 + e2_y*t732 + e2_z*t733)
-            t736 = ct_z*(e3_x*t731 + e3_y*t732 + e3_z*t733)
-            t737 = (0.5)*t734
-            t738 = (0.5)*t735
-            t739 = (0.5)*t736
-            t740 = t385*(t471 + t499 + t502)
-            t741 = t396*(t476 + t504 + t506)
-            t742 = t407*(t479 + t508 + t510)
-            t743 = Omb_x*t332 + Omb_y*t663
-            t744 = Omb_x*t317 + Omb_y*t313
-            t745 = Omb_x*t307 + Omb_y*t603
-            t746 = ct_x*(e1_x*t743 + e1_y*t744 + e1_z*t745)
-            t747 = ct_y*(e2_x*t743 + e2_y*t744 + e2_z*t745)
-            t748 = ct_z*(e3_x*t743 + e3_y*t744 + e3_z*t745)
-            t749 = (0.5)*t746
-            t750 = (0.5)*t747
-            t751 = (0.5)*t748
-            t752 = c_x*t6
-            t753 = c_y*t14
-            t754 = c_z*t22
-            t755 = c_x*t149
-            t756 = c_y*t152
-            t757 = c_z*t155
-            t758 = c_x*t189
-            t759 = c_y*t192
-            t760 = c_z*t195
-            t761 = c_x*t5
-            t762 = c_y*t13
-            t763 = c_z*t21
-            t764 = c_x*t148
-            t765 = c_y*t151
-            t766 = c_z*t154
-            t767 = c_x*t188
-            t768 = c_y*t191
-            t769 = c_z*t194
-            t770 = ct_x*e1_x
-            t771 = (0.5)*t770
-            t772 = ct_y*e2_x
-            t773 = (0.5)*t772
-            t774 = ct_z*e3_x
-            t775 = (0.5)*t774
-            t776 = c_x*t527
-            t777 = c_y*t529
-            t778 = c_z*t531
-            t779 = e1_y*t770 + e2_y*t772 + e3_y*t774
-            t780 = e1_z*t770 + e2_z*t772 + e3_z*t774
-            t781 = ct_x*e1_y
-            t782 = (0.5)*t781
-            t783 = ct_y*e2_y
-            t784 = (0.5)*t783
-            t785 = ct_z*e3_y
-            t786 = (0.5)*t785
-            t787 = c_x*t634
-            t788 = c_y*t636
-            t789 = c_z*t638
-            t790 = e1_z*t781 + e2_z*t783 + e3_z*t785
-            t791 = ct_x*e1_z
-            t792 = (0.5)*t791
-            t793 = ct_y*e2_z
-            t794 = (0.5)*t793
-            t795 = ct_z*e3_z
-            t796 = (0.5)*t795
-            t797 = c_x*t693
-            t798 = c_y*t695
-            t799 = c_z*t697
-            t800 = t292 + t297 + t302
-            t801 = t344 + t345 + t346
-            t802 = t352 + t353 + t354
-            t803 = t342*t800
-            t804 = t350*t801
-            t805 = t358*t802
-            t806 = t434 + t435 + t436
-            t807 = t440 + t441 + t442
-            t808 = t444 + t445 + t446
-            t809 = t342*t806
-            t810 = t350*t807
-            t811 = t358*t808
-            t812 = t483 + t484 + t485
-            t813 = t489 + t490 + t491
-            t814 = t493 + t494 + t495
-            t815 = t342*t812
-            t816 = t350*t813
-            t817 = t358*t814
+            t647 = 2*t635 + 2*t643 + 2*t646
+            t648 = e2_y*t634
+            t649 = e2_z*t642
+            t650 = e2_x*t645
+            t651 = 2*t648 + 2*t649 + 2*t650
+            t652 = e3_y*t634
+            t653 = e3_z*t642
+            t654 = e3_x*t645
+            t655 = 2*t652 + 2*t653 + 2*t654
+            t656 = n_z*t333
+            t657 = n_y*t399
+            t658 = t656 + t657
+            t659 = n_x*t658
+            t660 = 2*t631
+            t661 = e1_z*t660
+            t662 = -n_z*t630
+            t663 = 2*n_y*t658 + 2*t342 + 2*t662
+            t664 = 2*t659
+            t665 = e2_z*t660
+            t666 = e3_z*t660
+            t667 = (t364*(e1_x*t663 - t429*t659 + t661) + t366*(e2_x*t663 - e2_y*t664 + t665) +
+                t368*(e3_x*t663 - e3_y*t664 + t666))
+            t668 = t350*t399
+            t669 = t337*t348 + t668
+            t670 = t322*t378
+            t671 = t303*t350 + t670
+            t672 = n_x*t348
+            t673 = t321 + t636 + t672
+            t674 = t308*t348
+            t675 = n_x*t673 + t674
+            t676 = n_y*t669 - n_z*t671 + t675
+            t677 = e1_x*t676
+            t678 = t337*t493
+            t679 = t322*t335 + t678
+            t680 = n_y*t673 + t369
+            t681 = -n_x*t669 + n_z*t679 + t680
+            t682 = e1_y*t681
+            t683 = n_z*t673 + t309
+            t684 = n_x*t671 - n_y*t679 + t683
+            t685 = e1_z*t684
+            t686 = 2*t677 + 2*t682 + 2*t685
+            t687 = t400 + t628
+            t688 = t322*t348 + t350*t493
+            t689 = t378*t402 + t668
+            t690 = 2*n_x*t687 + 2*n_y*t688 - 2*n_z*t689
+            t691 = t335*t337
+            t692 = t303*t322
+            t693 = t322*t493 + t335*t402 + t691 + t692
+            t694 = -2*n_x*t688 + 2*n_y*t687 + 2*n_z*t693 + 2*t309
+            t695 = t308*t399
+            t696 = 2*n_x*t689 - 2*n_y*t693 + 2*n_z*t687 + 2*t695
+            t697 = e2_x*t676
+            t698 = e2_y*t681
+            t699 = e2_z*t684
+            t700 = 2*t697 + 2*t698 + 2*t699
+            t701 = e3_x*t676
+            t702 = e3_y*t681
+            t703 = e3_z*t684
+            t704 = 2*t701 + 2*t702 + 2*t703
+            t705 = n_x*t319 + n_y*t490
+            t706 = n_x*t333
+            t707 = n_y*t395
+            t708 = t706 + t707
+            t709 = n_z*t708
+            t710 = t308*t490
+            t711 = (0.5)*t710
+            t712 = n_y*t705 - t709 + t711
+            t713 = e1_x*t712
+            t714 = n_x*t346
+            t715 = n_y*t374
+            t716 = t714 + t715
+            t717 = n_x*t705
+            t718 = t308*t325
+            t719 = (0.5)*t718
+            t720 = n_z*t716 - t717 + t719
+            t721 = e1_y*t720
+            t722 = n_y*t716
+            t723 = n_x*t708 + t341*t387 - t722
+            t724 = e1_z*t723
+            t725 = 2*t713 + 2*t721 + 2*t724
+            t726 = e2_x*t712
+            t727 = e2_y*t720
+            t728 = e2_z*t723
+            t729 = 2*t726 + 2*t727 + 2*t728
+            t730 = e3_x*t712
+            t731 = e3_y*t720
+            t732 = e3_z*t723
+            t733 = 2*t730 + 2*t731 + 2*t732
+            t734 = t308*t319
+            t735 = (0.5)*t734
+            t736 = 2*t717 + 2*t735
+            t737 = n_x*t397 + t590
+            t738 = -2*n_x*t737 + t308*t333
+            t739 = (0.5)*t599
+            t740 = -n_z*t705
+            t741 = 2*n_y*t737 + 2*t739 + 2*t740
+            t742 = (t364*(e1_x*t741 + e1_y*t738 + e1_z*t736) + t366*(e2_x*t741 + e2_y*t738 +
+                e2_z*t736) + t368*(e3_x*t741 + e3_y*t738 + e3_z*t736))
+            t743 = t350*t397
+            t744 = t337*t346 + t743
+            t745 = t322*t376
+            t746 = t319*t350 + t745
+            t747 = n_z*t319
+            t748 = t334 + t714 + t747
+            t749 = n_x*t748 + t485
+            t750 = n_y*t744 - n_z*t746 + t749
+            t751 = e1_x*t750
+            t752 = t325*t337
+            t753 = t322*t333 + t752
+            t754 = t308*t333
+            t755 = n_y*t748 + t754
+            t756 = -n_x*t744 + n_z*t753 + t755
+            t757 = e1_y*t756
+            t758 = n_z*t748 + t734
+            t759 = n_x*t746 - n_y*t753 + t758
+            t760 = e1_z*t759
+            t761 = 2*t751 + 2*t757 + 2*t760
+            t762 = t320 + t637
+            t763 = t322*t346 + t325*t350
+            t764 = t376*t402 + t743
+            t765 = 2*n_x*t762 + 2*n_y*t763 - 2*n_z*t764
+            t766 = t333*t337
+            t767 = t319*t322
+            t768 = t322*t325 + t333*t402 + t766 + t767
+            t769 = -2*n_x*t763 + 2*n_y*t762 + 2*n_z*t768 + 2*t734
+            t770 = t308*t397
+            t771 = 2*n_x*t764 - 2*n_y*t768 + 2*n_z*t762 + 2*t770
+            t772 = e2_x*t750
+            t773 = e2_y*t756
+            t774 = e2_z*t759
+            t775 = 2*t772 + 2*t773 + 2*t774
+            t776 = e3_x*t750
+            t777 = e3_y*t756
+            t778 = e3_z*t759
+            t779 = 2*t776 + 2*t777 + 2*t778
+            t780 = n_x*t493
+            t781 = t591 + t780
+            t782 = n_x*t399 + n_z*t331
+            t783 = n_z*t782
+            t784 = n_y*t781 + t559 - t783
+            t785 = e1_x*t784
+            t786 = n_z*t344
+            t787 = n_x*t378
+            t788 = t786 + t787
+            t789 = n_y*t788
+            t790 = (0.5)*t695
+            t791 = n_x*t782 - t789 + t790
+            t792 = e1_z*t791
+            t793 = n_x*t781
+            t794 = n_z*t788 + t341*t502 - t793
+            t795 = e1_y*t794
+            t796 = 2*t785 + 2*t792 + 2*t795
+            t797 = e2_x*t784
+            t798 = e2_z*t791
+            t799 = e2_y*t794
+            t800 = 2*t797 + 2*t798 + 2*t799
+            t801 = e3_x*t784
+            t802 = e3_z*t791
+            t803 = e3_y*t794
+            t804 = 2*t801 + 2*t802 + 2*t803
+            t805 = t308*t493
+            t806 = (0.5)*t805
+            t807 = 2*t793 + 2*t806
+            t808 = n_x*t335
+            t809 = t608 + t808
+            t810 = -2*n_x*t809 + t308*t399
+            t811 = -n_z*t781
+            t812 = 2*n_y*t809 + 2*t711 + 2*t811
+            t813 = (t364*(e1_x*t812 + e1_y*t810 + e1_z*t807) + t366*(e2_x*t812 + e2_y*t810 +
+                e2_z*t807) + t368*(e3_x*t812 + e3_y*t810 + e3_z*t807))
+            t814 = Oma_y*t114 + t88
+            t815 = -t96
+            t816 = Oma_x*t91 - Oma_z*t114
+            t817 = c_x*(e1_x*t815 + e1_y*t816 + e1_z*t814)
+            t818 = c_y*(e2_x*t815 + e2_y*t816 + e2_z*t814)
+            t819 = c_z*(e3_x*t815 + e3_y*t816 + e3_z*t814)
+            t820 = t113 + t115
+            t821 = k_x*t820
+            t822 = t117 + t118
+            t823 = k_y*t822
+            t824 = t120 + t121
+            t825 = k_z*t824
+            t826 = e1_y*t91
+            t827 = e2_y*t91
+            t828 = e3_y*t91
+            t829 = (0.5)*t593
+            t830 = 2*t500 + 2*t829
+            t831 = t308*t378 - 2*t351
+            t832 = t363*(t488 + t499 + t504)
+            t833 = t365*(t506 + t508 + t509)
+            t834 = t367*(t511 + t513 + t514)
+            t835 = 2*t351
+            t836 = Omb_x*t490 + Omb_y*t325 + Omb_z*t493
+            t837 = n_x*t836 + n_z*t431
+            t838 = -t337*t431 + t350*t434
+            t839 = t337*t836 + t438*t496
+            t840 = -n_x*t839 + n_y*t837 + n_z*t838
+            t841 = -t322*t836 + t350*t431 + t350*t440 + t436*t496
+            t842 = n_x*t841 - n_y*t838 + n_z*t837 + t308*t431
+            t843 = n_x*t837 + n_y*t839 - n_z*t841 + t308*t836
+            t844 = t447*(e1_x*t843 + e1_y*t840 + e1_z*t842)
+            t845 = t450*(e2_x*t843 + e2_y*t840 + e2_z*t842)
+            t846 = t452*(e3_x*t843 + e3_y*t840 + e3_z*t842)
+            t847 = t308*t493 - 2*t323
+            t848 = -t496
+            t849 = 2*n_z*t848
+            t850 = 2*t132
+            t851 = e1_x*t850
+            t852 = (0.5)*t542 + (0.5)*t851
+            t853 = e2_x*t850
+            t854 = (0.5)*t545 + (0.5)*t853
+            t855 = e3_x*t850
+            t856 = (0.5)*t548 + (0.5)*t855
+            t857 = n_y*t381
+            t858 = t308*t346 - 2*t857
+            t859 = 2*t497 + 2*t719
+            t860 = -t341*t354
+            t861 = 2*t382 - 2*t556 + 2*t860
+            t862 = 2*e1_z
+            t863 = n_y*t458
+            t864 = 2*t497
+            t865 = 2*t459 - 2*t556
+            t866 = 2*t863
+            t867 = n_z*t346
+            t868 = n_x*t325
+            t869 = t867 + t868
+            t870 = t333*t350 + t337*t376
+            t871 = t397*t496 + t752
+            t872 = -2*n_x*t871 + 2*n_y*t869 + 2*n_z*t870
+            t873 = t346*t350
+            t874 = t319*t496 + t350*t376 + t767 + t873
+            t875 = 2*n_x*t874 - 2*n_y*t870 + 2*n_z*t869 + 2*t485
+            t876 = 2*n_x*t869 + 2*n_y*t871 - 2*n_z*t874 + 2*t718
+            t877 = 2*t789
+            t878 = e1_x*t877
+            t879 = n_z*t490
+            t880 = n_x*t303 + t879
+            t881 = n_y*t880
+            t882 = n_x*t788
+            t883 = 2*n_z*t880 + 2*t355 - 2*t882
+            t884 = e2_x*t877
+            t885 = 2*t881
+            t886 = e3_x*t877
+            t887 = (t364*(e1_y*t883 - t862*t881 + t878) + t366*(e2_y*t883 - e2_z*t885 + t884) +
+                t368*(e3_y*t883 - e3_z*t885 + t886))
+            t888 = t491 + t786
+            t889 = t331*t350 + t337*t374
+            t890 = t395*t496 + t597
+            t891 = -2*n_x*t890 + 2*n_y*t888 + 2*n_z*t889
+            t892 = t344*t350
+            t893 = t314*t496 + t350*t374 + t614 + t892
+            t894 = 2*n_x*t893 - 2*n_y*t889 + 2*n_z*t888 + 2*t593
+            t895 = 2*n_x*t888 + 2*n_y*t890 - 2*n_z*t893 + 2*t710
+            t896 = (0.5)*t674
+            t897 = 2*t639 + 2*t896
+            t898 = n_y*t493 + t747
+            t899 = -2*n_y*t898 + t303*t308
+            t900 = n_x*t627
+            t901 = 2*n_z*t898 + 2*t735 - 2*t900
+            t902 = (t364*(e1_x*t897 + e1_y*t901 + e1_z*t899) + t366*(e2_x*t897 + e2_y*t901 +
+                e2_z*t899) + t368*(e3_x*t897 + e3_y*t901 + e3_z*t899))
+            t903 = t349 + t780
+            t904 = t335*t350 + t337*t378
+            t905 = t399*t496 + t678
+            t906 = -2*n_x*t905 + 2*n_y*t903 + 2*n_z*t904
+            t907 = t348*t350
+            t908 = t303*t496 + t350*t378 + t692 + t907
+            t909 = 2*n_x*t908 - 2*n_y*t904 + 2*n_z*t903 + 2*t674
+            t910 = 2*n_x*t903 + 2*n_y*t905 - 2*n_z*t908 + 2*t805
+            t911 = t308*t374
+            t912 = (0.5)*t911
+            t913 = 2*t722 + 2*t912
+            t914 = t607 + t868
+            t915 = -2*n_y*t914 + t308*t490
+            t916 = n_x*t716
+            t917 = 2*n_z*t914 + 2*t633 - 2*t916
+            t918 = (t364*(e1_x*t913 + e1_y*t917 + e1_z*t915) + t366*(e2_x*t913 + e2_y*t917 +
+                e2_z*t915) + t368*(e3_x*t913 + e3_y*t917 + e3_z*t915))
+            t919 = Oma_z*t132 + t92
+            t920 = -t89
+            t921 = -Oma_x*t132 + Oma_y*t75
+            t922 = c_x*(e1_x*t919 + e1_y*t920 + e1_z*t921)
+            t923 = c_y*(e2_x*t919 + e2_y*t920 + e2_z*t921)
+            t924 = c_z*(e3_x*t919 + e3_y*t920 + e3_z*t921)
+            t925 = t131 + t133
+            t926 = k_x*t925
+            t927 = t135 + t136
+            t928 = k_y*t927
+            t929 = t138 + t139
+            t930 = k_z*t929
+            t931 = e1_z*t75
+            t932 = e2_z*t75
+            t933 = e3_z*t75
+            t934 = (0.5)*t754
+            t935 = 2*t385 + 2*t934
+            t936 = t308*t395 - 2*t357
+            t937 = t363*(t372 + t384 + t389)
+            t938 = t365*(t411 + t413 + t414)
+            t939 = t367*(t420 + t422 + t423)
+            t940 = 2*t385
+            t941 = 2*t357
+            t942 = Omb_x*t374 + Omb_y*t376 + Omb_z*t378
+            t943 = n_x*t433 + n_y*t942
+            t944 = -t322*t433 + t337*t436
+            t945 = t322*t942 + t381*t443
+            t946 = n_x*t944 - n_y*t945 + n_z*t943
+            t947 = t337*t433 + t337*t438 - t350*t942 + t381*t432
+            t948 = n_x*t943 + n_y*t947 - n_z*t944 + t308*t433
+            t949 = -n_x*t947 + n_y*t943 + n_z*t945 + t308*t942
+            t950 = t447*(e1_x*t948 + e1_y*t949 + e1_z*t946)
+            t951 = t450*(e2_x*t948 + e2_y*t949 + e2_z*t946)
+            t952 = t452*(e3_x*t948 + e3_y*t949 + e3_z*t946)
+            t953 = t308*t374 - 2*t500
+            t954 = 2*e1_x
+            t955 = -t381
+            t956 = n_y*t955
+            t957 = n_x*t955
+            t958 = 2*t956
+            t959 = 2*t957
+            t960 = (0.5)*t540 + (0.5)*t851
+            t961 = (0.5)*t544 + (0.5)*t853
+            t962 = (0.5)*t547 + (0.5)*t855
+            t963 = t308*t335 - 2*t562
+            t964 = 2*t382 + 2*t641
+            t965 = t341*t360
+            t966 = -t857
+            t967 = 2*t403 + 2*t965 + 2*t966
+            t968 = 2*n_z
+            t969 = t571*t968
+            t970 = 2*t572 + 2*t966
+            t971 = 2*t382
+            t972 = n_y*t378
+            t973 = t808 + t972
+            t974 = t303*t337 + t322*t399
+            t975 = t381*t493 + t670
+            t976 = 2*n_x*t974 - 2*n_y*t975 + 2*n_z*t973
+            t977 = t337*t399 + t348*t381 + t691 + t907
+            t978 = 2*n_x*t973 + 2*n_y*t977 - 2*n_z*t974 + 2*t369
+            t979 = -2*n_x*t977 + 2*n_y*t973 + 2*n_z*t975 + 2*t640
+            t980 = n_x*t376
+            t981 = n_y*t344 + t980
+            t982 = t968*t981
+            t983 = t429*t709
+            t984 = -n_y*t708
+            t985 = 2*n_x*t981 + 2*t361 + 2*t984
+            t986 = 2*t709
+            t987 = e2_y*t986
+            t988 = e3_y*t986
+            t989 = (t364*(-e1_x*t982 + e1_z*t985 + t983) + t366*(-e2_x*t982 + e2_z*t985 + t987) +
+                t368*(-e3_x*t982 + e3_z*t985 + t988))
+            t990 = t377 + t706
+            t991 = t319*t337 + t322*t397
+            t992 = t325*t381 + t745
+            t993 = 2*n_x*t991 - 2*n_y*t992 + 2*n_z*t990
+            t994 = t337*t397 + t346*t381 + t766 + t873
+            t995 = 2*n_x*t990 + 2*n_y*t994 - 2*n_z*t991 + 2*t754
+            t996 = -2*n_x*t994 + 2*n_y*t990 + 2*n_z*t992 + 2*t632
+            t997 = 2*t739 + 2*t783
+            t998 = n_z*t374 + t672
+            t999 = -2*n_z*t998 + t308*t344
+            t1000 = -n_y*t782
+            t1001 = 2*n_x*t998 + 2*t1000 + 2*t896
+            t1002 = (t364*(e1_x*t999 + e1_y*t997 + e1_z*t1001) + t366*(e2_x*t999 + e2_y*t997 +
+                e2_z*t1001) + t368*(e3_x*t999 + e3_y*t997 + e3_z*t1001))
+            t1003 = t332 + t715
+            t1004 = t314*t337 + t322*t395
+            t1005 = t381*t490 + t588
+            t1006 = 2*n_x*t1004 - 2*n_y*t1005 + 2*n_z*t1003
+            t1007 = t337*t395 + t344*t381 + t613 + t892
+            t1008 = 2*n_x*t1003 + 2*n_y*t1007 - 2*n_z*t1004 + 2*t599
+            t1009 = -2*n_x*t1007 + 2*n_y*t1003 + 2*n_z*t1005 + 2*t911
+            t1010 = (0.5)*t770
+            t1011 = 2*t1010 + 2*t644
+            t1012 = t867 + t972
+            t1013 = -2*n_z*t1012 + t308*t376
+            t1014 = -n_y*t638
+            t1015 = 2*n_x*t1012 + 2*t1014 + 2*t790
+            t1016 = (t364*(e1_x*t1013 + e1_y*t1011 + e1_z*t1015) + t366*(e2_x*t1013 + e2_y*t1011 +
+                e2_z*t1015) + t368*(e3_x*t1013 + e3_y*t1011 + e3_z*t1015))
+            t1017 = Omb_y*t348 + Omb_z*t376
+            t1018 = Omb_y*t335 + Omb_z*t397
+            t1019 = Omb_y*t303 + Omb_z*t325
+            t1020 = n_x*t1017 + n_y*t1018 + n_z*t1019
+            t1021 = t1017*t337 - t1018*t350 + t432*t638 + t438*t627
+            t1022 = -t1017*t322 + t1019*t350 + t436*t627 + t440*t630
+            t1023 = n_x*t1020 + n_y*t1021 - n_z*t1022 + t1017*t308
+            t1024 = t1018*t322 - t1019*t337 + t434*t630 + t443*t638
+            t1025 = -n_x*t1021 + n_y*t1020 + n_z*t1024 + t1018*t308
+            t1026 = n_x*t1022 - n_y*t1024 + n_z*t1020 + t1019*t308
+            t1027 = t447*(e1_x*t1023 + e1_y*t1025 + e1_z*t1026)
+            t1028 = -t638
+            t1029 = n_x*t1028
+            t1030 = 2*n_y*t1028 + 2*t662
+            t1031 = t450*(e2_x*t1023 + e2_y*t1025 + e2_z*t1026)
+            t1032 = 2*t1029
+            t1033 = t452*(e3_x*t1023 + e3_y*t1025 + e3_z*t1026)
+            t1034 = t363*(t635 + t643 + t646)
+            t1035 = t365*(t648 + t649 + t650)
+            t1036 = t367*(t652 + t653 + t654)
+            t1037 = -t630
+            t1038 = n_y*t1037
+            t1039 = 2*n_z*t1037 - 2*t900
+            t1040 = 2*t639
+            t1041 = 2*t1038
+            t1042 = -t627
+            t1043 = t1042*t968
+            t1044 = 2*n_x*t1042 + 2*t1014
+            t1045 = 2*t644
+            t1046 = 2*n_x*t401 - 2*n_y*t380 + 2*t486
+            t1047 = -2*n_x*t495 + 2*n_z*t380 + 2*t641
+            t1048 = 2*n_y*t495 - 2*n_z*t401 + 2*t561
+            t1049 = t344*t638 + t395*t627
+            t1050 = t314*t627 + t374*t630
+            t1051 = 2*n_y*t1049 - 2*n_z*t1050
+            t1052 = t331*t630 + t490*t638
+            t1053 = -2*n_x*t1049 + 2*n_z*t1052
+            t1054 = 2*n_x*t1050 - 2*n_y*t1052
+            t1055 = n_x*t656
+            t1056 = 2*n_x*t320 - 2*t1055
+            t1057 = -2*n_x*t347 + 2*t305*t333 + 2*t934
+            t1058 = 2*n_z*t714 - 2*t305*t319 + 2*t719
+            t1059 = t346*t638 + t397*t627 + t669
+            t1060 = t319*t627 + t376*t630 + t671
+            t1061 = 2*n_y*t1059 - 2*n_z*t1060 + 2*t675
+            t1062 = t325*t638 + t333*t630 + t679
+            t1063 = -2*n_x*t1059 + 2*n_z*t1062 + 2*t680
+            t1064 = 2*n_x*t1060 - 2*n_y*t1062 + 2*t683
+            t1065 = n_x*t628
+            t1066 = -2*n_x*t336 + 2*t1065
+            t1067 = -2*n_x*t626 + 2*t305*t335 + 2*t370
+            t1068 = 2*n_x*t349 - 2*t303*t305 + 2*t806
+            t1069 = t398 + t629 + t980
+            t1070 = t348*t638 + t399*t627 + t870
+            t1071 = t303*t627 + t378*t630 + t763
+            t1072 = 2*n_x*t1069 + 2*n_y*t1070 - 2*n_z*t1071 + 2*t632
+            t1073 = t335*t630 + t493*t638 + t991
+            t1074 = -2*n_x*t1070 + 2*n_y*t1069 + 2*n_z*t1073 + 2*t770
+            t1075 = 2*n_x*t1071 - 2*n_y*t1073 + 2*n_z*t1069 + 2*t718
+            t1076 = Omb_x*t378 + Omb_z*t344
+            t1077 = Omb_x*t399 + Omb_z*t331
+            t1078 = Omb_x*t493 + Omb_z*t314
+            t1079 = n_x*t1076 + n_y*t1077 + n_z*t1078
+            t1080 = t1076*t337 - t1077*t350 + t432*t782 + t438*t788
+            t1081 = -t1076*t322 + t1078*t350 + t436*t788 + t440*t781
+            t1082 = n_x*t1079 + n_y*t1080 - n_z*t1081 + t1076*t308
+            t1083 = t1077*t322 - t1078*t337 + t434*t781 + t443*t782
+            t1084 = -n_x*t1080 + n_y*t1079 + n_z*t1083 + t1077*t308
+            t1085 = n_x*t1081 - n_y*t1083 + n_z*t1079 + t1078*t308
+            t1086 = t447*(e1_x*t1082 + e1_y*t1084 + e1_z*t1085)
+            t1087 = -t781
+            t1088 = n_y*t1087
+            t1089 = 2*n_z*t1087 - 2*t882
+            t1090 = t450*(e2_x*t1082 + e2_y*t1084 + e2_z*t1085)
+            t1091 = 2*t1088
+            t1092 = t452*(e3_x*t1082 + e3_y*t1084 + e3_z*t1085)
+            t1093 = t363*(t785 + t792 + t795)
+            t1094 = t365*(t797 + t798 + t799)
+            t1095 = t367*(t801 + t802 + t803)
+            t1096 = -t788
+            t1097 = t1096*t968
+            t1098 = 2*n_x*t1096 + 2*t1000
+            t1099 = 2*t783
+            t1100 = -t782
+            t1101 = n_x*t1100
+            t1102 = 2*n_y*t1100 + 2*t811
+            t1103 = 2*t793
+            t1104 = 2*t1101
+            t1105 = t491 + t494
+            t1106 = t396 + t400
+            t1107 = 2*n_y*t1105 - 2*n_z*t1106 + 2*t370
+            t1108 = t375 + t379
+            t1109 = 2*n_x*t1106 - 2*n_y*t1108 + 2*t559
+            t1110 = -2*n_x*t1105 + 2*n_z*t1108 + 2*t860
+            t1111 = t346*t782 + t397*t788
+            t1112 = t319*t788 + t376*t781
+            t1113 = 2*n_y*t1111 - 2*n_z*t1112
+            t1114 = t325*t782 + t333*t781
+            t1115 = -2*n_x*t1111 + 2*n_z*t1114
+            t1116 = 2*n_x*t1112 - 2*n_y*t1114
+            t1117 = 2*n_y*n_z*t348 - 2*t1065
+            t1118 = -2*n_y*t336 + 2*t303*t306 + 2*t310
+            t1119 = 2*n_x*t636 - 2*t306*t348 + 2*t641
+            t1120 = t348*t782 + t399*t788 + t587
+            t1121 = t303*t788 + t378*t781 + t589
+            t1122 = 2*n_y*t1120 - 2*n_z*t1121 + 2*t594
+            t1123 = t335*t781 + t493*t782 + t598
+            t1124 = -2*n_x*t1120 + 2*n_z*t1123 + 2*t600
+            t1125 = 2*n_x*t1121 - 2*n_y*t1123 + 2*t603
+            t1126 = -n_y*t786
+            t1127 = -2*n_y*t315 - 2*t1126
+            t1128 = -2*n_z*t590 + 2*t306*t314 + 2*t392
+            t1129 = 2*n_y*t332 - 2*t306*t344 + 2*t912
+            t1130 = t494 + t657 + t787
+            t1131 = t344*t782 + t395*t788 + t904
+            t1132 = t314*t788 + t374*t781 + t688
+            t1133 = 2*n_x*t1130 + 2*n_y*t1131 - 2*n_z*t1132 + 2*t640
+            t1134 = t331*t781 + t490*t782 + t974
+            t1135 = -2*n_x*t1131 + 2*n_y*t1130 + 2*n_z*t1134 + 2*t695
+            t1136 = 2*n_x*t1132 - 2*n_y*t1134 + 2*n_z*t1130 + 2*t805
+            t1137 = Omb_x*t346 + Omb_y*t374
+            t1138 = Omb_x*t333 + Omb_y*t395
+            t1139 = Omb_x*t319 + Omb_y*t490
+            t1140 = n_x*t1137 + n_y*t1138 + n_z*t1139
+            t1141 = t1137*t337 - t1138*t350 + t432*t708 + t438*t716
+            t1142 = -t1137*t322 + t1139*t350 + t436*t716 + t440*t705
+            t1143 = n_x*t1140 + n_y*t1141 - n_z*t1142 + t1137*t308
+            t1144 = t1138*t322 - t1139*t337 + t434*t705 + t443*t708
+            t1145 = -n_x*t1141 + n_y*t1140 + n_z*t1144 + t1138*t308
+            t1146 = n_x*t1142 - n_y*t1144 + n_z*t1140 + t1139*t308
+            t1147 = t447*(e1_x*t1143 + e1_y*t1145 + e1_z*t1146)
+            t1148 = -t716
+            t1149 = t1148*t968
+            t1150 = 2*n_x*t1148 + 2*t984
+            t1151 = t450*(e2_x*t1143 + e2_y*t1145 + e2_z*t1146)
+            t1152 = t452*(e3_x*t1143 + e3_y*t1145 + e3_z*t1146)
+            t1153 = t363*(t713 + t721 + t724)
+            t1154 = t365*(t726 + t727 + t728)
+            t1155 = t367*(t730 + t731 + t732)
+            t1156 = -t708
+            t1157 = n_x*t1156
+            t1158 = 2*n_y*t1156 + 2*t740
+            t1159 = 2*t717
+            t1160 = 2*t1157
+            t1161 = -t705
+            t1162 = n_y*t1161
+            t1163 = 2*n_z*t1161 - 2*t916
+            t1164 = 2*t722
+            t1165 = 2*t1162
+            t1166 = t375 + t377
+            t1167 = t491 + t492
+            t1168 = -2*n_x*t1167 + 2*n_z*t1166 + 2*t392
+            t1169 = t396 + t398
+            t1170 = 2*n_y*t1167 - 2*n_z*t1169 + 2*t719
+            t1171 = 2*n_x*t1169 - 2*n_y*t1166 + 2*t965
+            t1172 = t348*t708 + t399*t716
+            t1173 = t303*t716 + t378*t705
+            t1174 = 2*n_y*t1172 - 2*n_z*t1173
+            t1175 = t335*t705 + t493*t708
+            t1176 = -2*n_x*t1172 + 2*n_z*t1175
+            t1177 = 2*n_x*t1173 - 2*n_y*t1175
+            t1178 = 2*n_z*t332 + 2*t1126
+            t1179 = -2*n_z*t315 + 2*t304*t344 + 2*t829
+            t1180 = 2*n_y*t591 - 2*t304*t331 + 2*t559
+            t1181 = t344*t708 + t395*t716 + t744
+            t1182 = t314*t716 + t374*t705 + t746
+            t1183 = 2*n_y*t1181 - 2*n_z*t1182 + 2*t749
+            t1184 = t331*t705 + t490*t708 + t753
+            t1185 = -2*n_x*t1181 + 2*n_z*t1184 + 2*t755
+            t1186 = 2*n_x*t1182 - 2*n_y*t1184 + 2*t758
+            t1187 = -2*n_z*t347 + 2*t1055
+            t1188 = -2*n_x*t747 + 2*t304*t346 + 2*t486
+            t1189 = 2*n_z*t320 + 2*t1010 - 2*t304*t333
+            t1190 = t375 + t707 + t879
+            t1191 = t346*t708 + t397*t716 + t889
+            t1192 = t319*t716 + t376*t705 + t610
+            t1193 = 2*n_x*t1190 + 2*n_y*t1191 - 2*n_z*t1192 + 2*t911
+            t1194 = t1004 + t325*t708 + t333*t705
+            t1195 = -2*n_x*t1191 + 2*n_y*t1190 + 2*n_z*t1194 + 2*t558
+            t1196 = 2*n_x*t1192 - 2*n_y*t1194 + 2*n_z*t1190 + 2*t710
+            t1197 = c_x*t6
+            t1198 = c_y*t14
+            t1199 = c_z*t22
+            t1200 = c_x*t149
+            t1201 = c_y*t152
+            t1202 = c_z*t155
+            t1203 = c_x*t189
+            t1204 = c_y*t192
+            t1205 = c_z*t195
+            t1206 = c_x*t5
+            t1207 = c_y*t13
+            t1208 = c_z*t21
+            t1209 = c_x*t148
+            t1210 = c_y*t151
+            t1211 = c_z*t154
+            t1212 = c_x*t188
+            t1213 = c_y*t191
+            t1214 = c_z*t194
+            t1215 = c_x*t294
+            t1216 = c_y*t296
+            t1217 = c_z*t298
+            t1218 = t447*(t570 + t574 + t576)
+            t1219 = t450*(t578 + t579 + t580)
+            t1220 = t452*(t582 + t583 + t584)
+            t1221 = c_x*t820
+            t1222 = c_y*t822
+            t1223 = c_z*t824
+            t1224 = t447*(t522 + t526 + t529)
+            t1225 = t450*(t531 + t532 + t533)
+            t1226 = t452*(t535 + t536 + t537)
+            t1227 = c_x*t925
+            t1228 = c_y*t927
+            t1229 = c_z*t929
+            t1230 = t447*(t456 + t461 + t463)
+            t1231 = t450*(t474 + t475 + t476)
+            t1232 = t452*(t479 + t480 + t481)
+            t1233 = t447*(t596 + t602 + t605)
+            t1234 = t450*(t618 + t619 + t620)
+            t1235 = t452*(t622 + t623 + t624)
+            t1236 = t447*(t751 + t757 + t760)
+            t1237 = t450*(t772 + t773 + t774)
+            t1238 = t452*(t776 + t777 + t778)
+            t1239 = t447*(t677 + t682 + t685)
+            t1240 = t450*(t697 + t698 + t699)
+            t1241 = t452*(t701 + t702 + t703)
             vectors[12] = (vectors[0]*(t12*t15 + t12*t29 + t20*t23 + t20*t30 + t28*t4 + t4*t7) +
                 vectors[1]*(t15*t40 + t23*t45 + t28*t35 + t29*t40 + t30*t45 + t35*t7) +
                 vectors[2]*(t15*t55 + t23*t60 + t28*t50 + t29*t55 + t30*t60 + t50*t7) +
@@ -1625,201 +2205,258 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 t275*t84 + t279) + vectors[7]*(t116*t268 + t116*t273 + t119*t269 + t119*t274 +
                 t122*t270 + t122*t275 + t283) + vectors[8]*(t134*t268 + t134*t273 + t137*t269 +
                 t137*t274 + t140*t270 + t140*t275 + t287))
-            vectors[18] = (vectors[0]*(t112 + t12*t525 + t12*t530 + t20*t526 + t20*t532 + t4*t524
-                + t4*t528) + vectors[1]*(t172 + t35*t524 + t35*t528 + t40*t525 + t40*t530 +
-                t45*t526 + t45*t532) + vectors[10]*(t326*t437 + t343*(e1_y*t438 + e1_z*t439) +
-                t349*t443 + t351*(e2_y*t438 + e2_z*t439) + t357*t447 + t359*(e3_y*t438 +
-                e3_z*t439) + t386*t457 + t397*t463 + t408*t469 + t482) + vectors[11]*(t326*t486 +
-                t343*(e1_y*t487 + e1_z*t488) + t349*t492 + t351*(e2_y*t487 + e2_z*t488) +
-                t357*t496 + t359*(e3_y*t487 + e3_z*t488) + t386*t503 + t397*t507 + t408*t511 +
-                t520) + vectors[2]*(t212 + t50*t524 + t50*t528 + t525*t55 + t526*t60 + t530*t55 +
-                t532*t60) + vectors[3]*(t239 + t524*t61 + t525*t62 + t526*t63 + t528*t61 +
-                t530*t62 + t532*t63) + vectors[4]*(t259 + t524*t64 + t525*t65 + t526*t66 +
-                t528*t64 + t530*t65 + t532*t66) + vectors[5]*(t279 + t524*t67 + t525*t68 +
-                t526*t69 + t528*t67 + t530*t68 + t532*t69) + vectors[6]*(-e1_x*t325 - e2_x*t348 -
-                e3_x*t356 + t103*t587 + t106*t590 + t109*t584 + t110*t587 + t111*t590 + t386*t573
-                + t397*t576 + t408*t579 + t475*(t592 + t594 + t596) + t478*(t597 + t598 + t599) +
-                t481*(t600 + t601 + t602) + t524*t78 + t525*t81 + t526*t84 + t528*t78 + t530*t81 +
-                t532*t84 + t584*t98) + vectors[7]*(-e1_y*t325 - e2_y*t348 - e3_y*t356 + t103*t135
-                + t106*t138 + t109*t131 + t110*t135 + t111*t138 + t116*t524 + t116*t528 +
-                t119*t525 + t119*t530 + t122*t526 + t122*t532 + t131*t98 + t386*t544 + t397*t548 +
-                t408*t552 + t475*(e1_z*t535 + t534) + t478*(e2_z*t535 + t537) + t481*(e3_z*t535 +
-                t539)) + vectors[8]*(-e1_z*t325 - e2_z*t348 - e3_z*t356 + t103*t554 + t106*t555 +
-                t109*t553 + t110*t554 + t111*t555 + t134*t524 + t134*t528 + t137*t525 + t137*t530
-                + t140*t526 + t140*t532 + t386*t562 + t397*t566 + t408*t570 + t475*(e1_y*t556 +
-                e1_z*t557) + t478*(e2_y*t556 + e2_z*t557) + t481*(e3_y*t556 + e3_z*t557) +
-                t553*t98) + vectors[9]*(t303*t326 + t343*(e1_y*t327 + e1_z*t328) + t347*t349 +
-                t351*(e2_y*t327 + e2_z*t328) + t355*t357 + t359*(e3_y*t327 + e3_z*t328) +
-                t372*t386 + t392*t397 + t403*t408 + t433))
-            vectors[19] = (vectors[0]*(t12*t632 + t12*t637 + t130 + t20*t633 + t20*t639 + t4*t631
-                + t4*t635) + vectors[1]*(t180 + t35*t631 + t35*t635 + t40*t632 + t40*t637 +
-                t45*t633 + t45*t639) + vectors[10]*(t343*(e1_x*t610 + e1_z*t609) + t351*(e2_x*t610
-                + e2_z*t609) + t359*(e3_x*t610 + e3_z*t609) + t437*t608 + t443*t612 + t447*t614 +
-                t457*t615 + t463*t616 + t469*t617 + t618) + vectors[11]*(t343*(e1_x*t620 +
-                e1_z*t619) + t351*(e2_x*t620 + e2_z*t619) + t359*(e3_x*t620 + e3_z*t619) +
-                t486*t608 + t492*t612 + t496*t614 + t503*t615 + t507*t616 + t511*t617 + t623) +
-                vectors[2]*(t220 + t50*t631 + t50*t635 + t55*t632 + t55*t637 + t60*t633 +
-                t60*t639) + vectors[3]*(t243 + t61*t631 + t61*t635 + t62*t632 + t62*t637 +
-                t63*t633 + t63*t639) + vectors[4]*(t263 + t631*t64 + t632*t65 + t633*t66 +
-                t635*t64 + t637*t65 + t639*t66) + vectors[5]*(t283 + t631*t67 + t632*t68 +
-                t633*t69 + t635*t67 + t637*t68 + t639*t69) + vectors[6]*(-e1_x*t607 - e2_x*t611 -
-                e3_x*t613 + t103*t641 + t106*t642 + t109*t640 + t110*t641 + t111*t642 +
-                t475*(e1_x*t643 + e1_z*t644) + t478*(e2_x*t643 + e2_z*t644) + t481*(e3_x*t643 +
-                e3_z*t644) + t573*t615 + t576*t616 + t579*t617 + t631*t78 + t632*t81 + t633*t84 +
-                t635*t78 + t637*t81 + t639*t84 + t640*t98) + vectors[7]*(-e1_y*t607 - e2_y*t611 -
-                e3_y*t613 + t103*t649 + t106*t651 + t109*t647 + t110*t649 + t111*t651 + t116*t631
-                + t116*t635 + t119*t632 + t119*t637 + t122*t633 + t122*t639 + t475*(t652 + t654 +
-                t656) + t478*(t657 + t658 + t659) + t481*(t660 + t661 + t662) + t544*t615 +
-                t548*t616 + t552*t617 + t647*t98) + vectors[8]*(-e1_z*t607 - e2_z*t611 - e3_z*t613
-                + t103*t79 + t106*t82 + t109*t74 + t110*t79 + t111*t82 + t134*t631 + t134*t635 +
-                t137*t632 + t137*t637 + t140*t633 + t140*t639 + t475*(e1_x*t474 + t572) +
-                t478*(e2_x*t474 + t575) + t481*(e3_x*t474 + t578) + t562*t615 + t566*t616 +
-                t570*t617 + t74*t98) + vectors[9]*(t303*t608 + t343*(e1_x*t625 + e1_z*t624) +
-                t347*t612 + t351*(e2_x*t625 + e2_z*t624) + t355*t614 + t359*(e3_x*t625 +
-                e3_z*t624) + t372*t615 + t392*t616 + t403*t617 + t627))
-            vectors[20] = (vectors[0]*(t12*t691 + t12*t696 + t147 + t20*t692 + t20*t698 + t4*t690
-                + t4*t694) + vectors[1]*(t187 + t35*t690 + t35*t694 + t40*t691 + t40*t696 +
-                t45*t692 + t45*t698) + vectors[10]*(t343*(e1_x*t679 + e1_y*t680) + t351*(e2_x*t679
-                + e2_y*t680) + t359*(e3_x*t679 + e3_y*t680) + t437*t668 + t443*t672 + t447*t674 +
-                t457*t675 + t463*t676 + t469*t677 + t682) + vectors[11]*(t343*(e1_x*t669 +
-                e1_y*t670) + t351*(e2_x*t669 + e2_y*t670) + t359*(e3_x*t669 + e3_y*t670) +
-                t486*t668 + t492*t672 + t496*t674 + t503*t675 + t507*t676 + t511*t677 + t678) +
-                vectors[2]*(t227 + t50*t690 + t50*t694 + t55*t691 + t55*t696 + t60*t692 +
-                t60*t698) + vectors[3]*(t247 + t61*t690 + t61*t694 + t62*t691 + t62*t696 +
-                t63*t692 + t63*t698) + vectors[4]*(t267 + t64*t690 + t64*t694 + t65*t691 +
-                t65*t696 + t66*t692 + t66*t698) + vectors[5]*(t287 + t67*t690 + t67*t694 +
-                t68*t691 + t68*t696 + t69*t692 + t69*t698) + vectors[6]*(-e1_x*t667 - e2_x*t671 -
-                e3_x*t673 + t103*t117 + t106*t120 + t109*t113 + t110*t117 + t111*t120 + t113*t98 +
-                t475*(e1_y*t621 + t541) + t478*(e2_y*t621 + t546) + t481*(e3_y*t621 + t550) +
-                t573*t675 + t576*t676 + t579*t677 + t690*t78 + t691*t81 + t692*t84 + t694*t78 +
-                t696*t81 + t698*t84) + vectors[7]*(-e1_y*t667 - e2_y*t671 - e3_y*t673 + t103*t700
-                + t106*t701 + t109*t699 + t110*t700 + t111*t701 + t116*t690 + t116*t694 +
-                t119*t691 + t119*t696 + t122*t692 + t122*t698 + t475*(e1_x*t513 + e1_y*t593) +
-                t478*(e2_x*t513 + e2_y*t593) + t481*(e3_x*t513 + e3_y*t593) + t544*t675 +
-                t548*t676 + t552*t677 + t699*t98) + vectors[8]*(-e1_z*t667 - e2_z*t671 - e3_z*t673
-                + t103*t703 + t106*t704 + t109*t702 + t110*t703 + t111*t704 + t134*t690 +
-                t134*t694 + t137*t691 + t137*t696 + t140*t692 + t140*t698 + t475*(t706 + t707 +
-                t709) + t478*(t710 + t711 + t712) + t481*(t713 + t714 + t715) + t562*t675 +
-                t566*t676 + t570*t677 + t702*t98) + vectors[9]*(t303*t668 + t343*(e1_x*t683 +
-                e1_y*t684) + t347*t672 + t351*(e2_x*t683 + e2_y*t684) + t355*t674 +
-                t359*(e3_x*t683 + e3_y*t684) + t372*t675 + t392*t676 + t403*t677 + t686))
-            vectors[21] = (vectors[10]*(t343*t486 + t351*t492 + t359*t496 + t437*t725 + t443*t726
-                + t447*t727 + t457*t716 + t463*t717 + t469*t718 + t475*(e1_z*t513 + t500) +
-                t478*(e2_z*t513 + t505) + t481*(e3_z*t513 + t509)) + vectors[11]*(t343*(e1_x*t680
-                + e1_y*t439 + e1_z*t610) + t351*(e2_x*t680 + e2_y*t439 + e2_z*t610) +
-                t359*(e3_x*t680 + e3_y*t439 + e3_z*t610) + t475*(e1_y*t474 + e1_z*t705) +
-                t478*(e2_y*t474 + e2_z*t705) + t481*(e3_y*t474 + e3_z*t705) + t486*t725 +
-                t492*t726 + t496*t727 + t503*t716 + t507*t717 + t511*t718) +
-                vectors[6]*(-e1_x*t722 - e2_x*t723 - e3_x*t724 + t433 + t573*t716 + t576*t717 +
-                t579*t718) + vectors[7]*(-e1_y*t722 - e2_y*t723 - e3_y*t724 + t544*t716 +
-                t548*t717 + t552*t718 + t627) + vectors[8]*(-e1_z*t722 - e2_z*t723 - e3_z*t724 +
-                t562*t716 + t566*t717 + t570*t718 + t686) + vectors[9]*(t303*t725 + t347*t726 +
-                t355*t727 + t372*t716 + t392*t717 + t403*t718 + t475*(t596 + t654 + t707) +
-                t478*(t599 + t658 + t711) + t481*(t602 + t661 + t714)))
-            vectors[22] = (vectors[10]*(t437*t737 + t443*t738 + t447*t739 + t457*t728 + t463*t729
-                + t469*t730 + t475*(t594 + t656 + t706) + t478*(t598 + t659 + t710) + t481*(t601 +
-                t662 + t713)) + vectors[11]*(t303*t343 + t347*t351 + t355*t359 + t475*(e1_x*t556 +
-                t367) + t478*(e2_x*t556 + t390) + t481*(e3_x*t556 + t401) + t486*t737 + t492*t738
-                + t496*t739 + t503*t728 + t507*t729 + t511*t730) + vectors[6]*(-e1_x*t734 -
-                e2_x*t735 - e3_x*t736 + t482 + t573*t728 + t576*t729 + t579*t730) +
-                vectors[7]*(-e1_y*t734 - e2_y*t735 - e3_y*t736 + t544*t728 + t548*t729 + t552*t730
-                + t618) + vectors[8]*(-e1_z*t734 - e2_z*t735 - e3_z*t736 + t562*t728 + t566*t729 +
-                t570*t730 + t682) + vectors[9]*(t303*t737 + t343*(e1_x*t670 + e1_y*t488 +
-                e1_z*t620) + t347*t738 + t351*(e2_x*t670 + e2_y*t488 + e2_z*t620) + t355*t739 +
-                t359*(e3_x*t670 + e3_y*t488 + e3_z*t620) + t372*t728 + t392*t729 + t403*t730 +
-                t475*(e1_x*t591 + e1_z*t621) + t478*(e2_x*t591 + e2_z*t621) + t481*(e3_x*t591 +
-                e3_z*t621)))
-            vectors[23] = (vectors[10]*(t343*(e1_x*t684 + e1_y*t328 + e1_z*t625) + t351*(e2_x*t684
-                + e2_y*t328 + e2_z*t625) + t359*(e3_x*t684 + e3_y*t328 + e3_z*t625) + t437*t749 +
-                t443*t750 + t447*t751 + t457*t740 + t463*t741 + t469*t742 + t475*(e1_x*t535 +
-                e1_y*t653) + t478*(e2_x*t535 + e2_y*t653) + t481*(e3_x*t535 + e3_y*t653)) +
-                vectors[11]*(t475*(t592 + t652 + t709) + t478*(t597 + t657 + t712) + t481*(t600 +
-                t660 + t715) + t486*t749 + t492*t750 + t496*t751 + t503*t740 + t507*t741 +
-                t511*t742) + vectors[6]*(-e1_x*t746 - e2_x*t747 - e3_x*t748 + t520 + t573*t740 +
-                t576*t741 + t579*t742) + vectors[7]*(-e1_y*t746 - e2_y*t747 - e3_y*t748 +
-                t544*t740 + t548*t741 + t552*t742 + t623) + vectors[8]*(-e1_z*t746 - e2_z*t747 -
-                e3_z*t748 + t562*t740 + t566*t741 + t570*t742 + t678) + vectors[9]*(t303*t749 +
-                t343*t437 + t347*t750 + t351*t443 + t355*t751 + t359*t447 + t372*t740 + t392*t741
-                + t403*t742 + t475*(e1_y*t644 + t450) + t478*(e2_y*t644 + t459) + t481*(e3_y*t644
-                + t465)))
-            vectors[24] = (vectors[0]*(t12*t753 + t20*t754 + t4*t752) + vectors[1]*(t35*t752 +
-                t40*t753 + t45*t754) + vectors[2]*(t50*t752 + t55*t753 + t60*t754) +
-                vectors[3]*(t61*t752 + t62*t753 + t63*t754) + vectors[4]*(t64*t752 + t65*t753 +
-                t66*t754) + vectors[5]*(t67*t752 + t68*t753 + t69*t754) + vectors[6]*(t752*t78 +
-                t753*t81 + t754*t84) + vectors[7]*(t116*t752 + t119*t753 + t122*t754) +
-                vectors[8]*(t134*t752 + t137*t753 + t140*t754))
-            vectors[25] = (vectors[0]*(t12*t756 + t20*t757 + t4*t755) + vectors[1]*(t35*t755 +
-                t40*t756 + t45*t757) + vectors[2]*(t50*t755 + t55*t756 + t60*t757) +
-                vectors[3]*(t61*t755 + t62*t756 + t63*t757) + vectors[4]*(t64*t755 + t65*t756 +
-                t66*t757) + vectors[5]*(t67*t755 + t68*t756 + t69*t757) + vectors[6]*(t755*t78 +
-                t756*t81 + t757*t84) + vectors[7]*(t116*t755 + t119*t756 + t122*t757) +
-                vectors[8]*(t134*t755 + t137*t756 + t140*t757))
-            vectors[26] = (vectors[0]*(t12*t759 + t20*t760 + t4*t758) + vectors[1]*(t35*t758 +
-                t40*t759 + t45*t760) + vectors[2]*(t50*t758 + t55*t759 + t60*t760) +
-                vectors[3]*(t61*t758 + t62*t759 + t63*t760) + vectors[4]*(t64*t758 + t65*t759 +
-                t66*t760) + vectors[5]*(t67*t758 + t68*t759 + t69*t760) + vectors[6]*(t758*t78 +
-                t759*t81 + t760*t84) + vectors[7]*(t116*t758 + t119*t759 + t122*t760) +
-                vectors[8]*(t134*t758 + t137*t759 + t140*t760))
-            vectors[27] = (vectors[0]*(t12*t762 + t20*t763 + t4*t761) + vectors[1]*(t35*t761 +
-                t40*t762 + t45*t763) + vectors[2]*(t50*t761 + t55*t762 + t60*t763) +
-                vectors[3]*(t61*t761 + t62*t762 + t63*t763) + vectors[4]*(t64*t761 + t65*t762 +
-                t66*t763) + vectors[5]*(t67*t761 + t68*t762 + t69*t763) + vectors[6]*(t761*t78 +
-                t762*t81 + t763*t84) + vectors[7]*(t116*t761 + t119*t762 + t122*t763) +
-                vectors[8]*(t134*t761 + t137*t762 + t140*t763))
-            vectors[28] = (vectors[0]*(t12*t765 + t20*t766 + t4*t764) + vectors[1]*(t35*t764 +
-                t40*t765 + t45*t766) + vectors[2]*(t50*t764 + t55*t765 + t60*t766) +
-                vectors[3]*(t61*t764 + t62*t765 + t63*t766) + vectors[4]*(t64*t764 + t65*t765 +
-                t66*t766) + vectors[5]*(t67*t764 + t68*t765 + t69*t766) + vectors[6]*(t764*t78 +
-                t765*t81 + t766*t84) + vectors[7]*(t116*t764 + t119*t765 + t122*t766) +
-                vectors[8]*(t134*t764 + t137*t765 + t140*t766))
-            vectors[29] = (vectors[0]*(t12*t768 + t20*t769 + t4*t767) + vectors[1]*(t35*t767 +
-                t40*t768 + t45*t769) + vectors[2]*(t50*t767 + t55*t768 + t60*t769) +
-                vectors[3]*(t61*t767 + t62*t768 + t63*t769) + vectors[4]*(t64*t767 + t65*t768 +
-                t66*t769) + vectors[5]*(t67*t767 + t68*t768 + t69*t769) + vectors[6]*(t767*t78 +
-                t768*t81 + t769*t84) + vectors[7]*(t116*t767 + t119*t768 + t122*t769) +
-                vectors[8]*(t134*t767 + t137*t768 + t140*t769))
-            vectors[30] = (vectors[0]*(t12*t777 + t20*t778 + t4*t776) + vectors[1]*(t35*t776 +
-                t40*t777 + t45*t778) + vectors[10]*(-t437*t771 - t443*t773 - t447*t775) +
-                vectors[11]*(-t486*t771 - t492*t773 - t496*t775) + vectors[2]*(t50*t776 + t55*t777
-                + t60*t778) + vectors[3]*(t61*t776 + t62*t777 + t63*t778) + vectors[4]*(t64*t776 +
-                t65*t777 + t66*t778) + vectors[5]*(t67*t776 + t68*t777 + t69*t778) +
-                vectors[6]*(ct_x*e1_x*e1_x + ct_y*e2_x*e2_x + ct_z*e3_x*e3_x + t776*t78 + t777*t81
-                + t778*t84) + vectors[7]*(t116*t776 + t119*t777 + t122*t778 + t779) +
-                vectors[8]*(t134*t776 + t137*t777 + t140*t778 + t780) + vectors[9]*(-t303*t771 -
-                t347*t773 - t355*t775))
-            vectors[31] = (vectors[0]*(t12*t788 + t20*t789 + t4*t787) + vectors[1]*(t35*t787 +
-                t40*t788 + t45*t789) + vectors[10]*(-t437*t782 - t443*t784 - t447*t786) +
-                vectors[11]*(-t486*t782 - t492*t784 - t496*t786) + vectors[2]*(t50*t787 + t55*t788
-                + t60*t789) + vectors[3]*(t61*t787 + t62*t788 + t63*t789) + vectors[4]*(t64*t787 +
-                t65*t788 + t66*t789) + vectors[5]*(t67*t787 + t68*t788 + t69*t789) +
-                vectors[6]*(t779 + t78*t787 + t788*t81 + t789*t84) + vectors[7]*(ct_x*e1_y*e1_y +
-                ct_y*e2_y*e2_y + ct_z*e3_y*e3_y + t116*t787 + t119*t788 + t122*t789) +
-                vectors[8]*(t134*t787 + t137*t788 + t140*t789 + t790) + vectors[9]*(-t303*t782 -
-                t347*t784 - t355*t786))
-            vectors[32] = (vectors[0]*(t12*t798 + t20*t799 + t4*t797) + vectors[1]*(t35*t797 +
-                t40*t798 + t45*t799) + vectors[10]*(-t437*t792 - t443*t794 - t447*t796) +
-                vectors[11]*(-t486*t792 - t492*t794 - t496*t796) + vectors[2]*(t50*t797 + t55*t798
-                + t60*t799) + vectors[3]*(t61*t797 + t62*t798 + t63*t799) + vectors[4]*(t64*t797 +
-                t65*t798 + t66*t799) + vectors[5]*(t67*t797 + t68*t798 + t69*t799) +
-                vectors[6]*(t78*t797 + t780 + t798*t81 + t799*t84) + vectors[7]*(t116*t797 +
-                t119*t798 + t122*t799 + t790) + vectors[8]*(ct_x*e1_z*e1_z + ct_y*e2_z*e2_z +
-                ct_z*e3_z*e3_z + t134*t797 + t137*t798 + t140*t799) + vectors[9]*(-t303*t792 -
-                t347*t794 - t355*t796))
-            vectors[33] = (vectors[10]*(t437*t803 + t443*t804 + t447*t805) +
-                vectors[11]*(t486*t803 + t492*t804 + t496*t805) + vectors[6]*(-t770*t800 -
-                t772*t801 - t774*t802) + vectors[7]*(-t781*t800 - t783*t801 - t785*t802) +
-                vectors[8]*(-t791*t800 - t793*t801 - t795*t802) + vectors[9]*(t303*t803 +
-                t347*t804 + t355*t805))
-            vectors[34] = (vectors[10]*(t437*t809 + t443*t810 + t447*t811) +
-                vectors[11]*(t486*t809 + t492*t810 + t496*t811) + vectors[6]*(-t770*t806 -
-                t772*t807 - t774*t808) + vectors[7]*(-t781*t806 - t783*t807 - t785*t808) +
-                vectors[8]*(-t791*t806 - t793*t807 - t795*t808) + vectors[9]*(t303*t809 +
-                t347*t810 + t355*t811))
-            vectors[35] = (vectors[10]*(t437*t815 + t443*t816 + t447*t817) +
-                vectors[11]*(t486*t815 + t492*t816 + t496*t817) + vectors[6]*(-t770*t812 -
-                t772*t813 - t774*t814) + vectors[7]*(-t781*t812 - t783*t813 - t785*t814) +
-                vectors[8]*(-t791*t812 - t793*t813 - t795*t814) + vectors[9]*(t303*t815 +
-                t347*t816 + t355*t817))
+            vectors[18] = (vectors[0]*(t112 + t12*t292 + t12*t297 + t20*t293 + t20*t299 + t291*t4
+                + t295*t4) + vectors[1]*(t172 + t291*t35 + t292*t40 + t293*t45 + t295*t35 +
+                t297*t40 + t299*t45) + vectors[10]*(t410*t796 + t419*t800 + t428*t804 +
+                t448*(e1_x*t765 + e1_y*t769 + e1_z*t771) + t451*(e2_x*t765 + e2_y*t769 +
+                e2_z*t771) + t453*(e3_x*t765 + e3_y*t769 + e3_z*t771) + t473*t761 + t478*t775 +
+                t483*t779 + t813) + vectors[11]*(t410*t725 + t419*t729 + t428*t733 +
+                t448*(e1_x*t690 + e1_y*t694 + e1_z*t696) + t451*(e2_x*t690 + e2_y*t694 +
+                e2_z*t696) + t453*(e3_x*t690 + e3_y*t694 + e3_z*t696) + t473*t686 + t478*t700 +
+                t483*t704 + t742) + vectors[2]*(t212 + t291*t50 + t292*t55 + t293*t60 + t295*t50 +
+                t297*t55 + t299*t60) + vectors[3]*(t239 + t291*t61 + t292*t62 + t293*t63 +
+                t295*t61 + t297*t62 + t299*t63) + vectors[4]*(t259 + t291*t64 + t292*t65 +
+                t293*t66 + t295*t64 + t297*t65 + t299*t66) + vectors[5]*(t279 + t291*t67 +
+                t292*t68 + t293*t69 + t295*t67 + t297*t68 + t299*t69) + vectors[6]*(t103*t546 +
+                t106*t549 + t109*t543 + t110*t546 + t111*t549 + t291*t78 + t292*t81 + t293*t84 +
+                t295*t78 + t297*t81 + t299*t84 + t364*(e1_x*t564 + e1_y*t557 + e1_z*t560) +
+                t366*(e2_x*t564 + e2_y*t557 + e2_z*t560) + t368*(e3_x*t564 + e3_y*t557 +
+                e3_z*t560) + t410*t551 + t419*t553 + t428*t555 + t448*(e1_x*t567 + e1_z*t566 -
+                t429*t565) + t451*(e2_x*t567 - e2_y*t568 + e2_z*t566) + t453*(e3_x*t567 -
+                e3_y*t568 + e3_z*t566) + t473*t577 + t478*t581 + t483*t585 + t543*t98) +
+                vectors[7]*(t103*t135 + t106*t138 + t109*t131 + t110*t135 + t111*t138 + t116*t291
+                + t116*t295 + t119*t292 + t119*t297 + t122*t293 + t122*t299 + t131*t98 +
+                t364*(e1_z*t484 + t373) + t366*(e2_z*t484 + t412) + t368*(e3_z*t484 + t421) +
+                t410*t505 + t419*t510 + t428*t515 + t448*(-e1_z*t518 + n_z*t429*t516) +
+                t451*(e2_y*t519 - e2_z*t518) + t453*(e3_y*t519 - e3_z*t518) + t473*t530 +
+                t478*t534 + t483*t538) + vectors[8]*(t103*t301 + t106*t302 + t109*t300 + t110*t301
+                + t111*t302 + t134*t291 + t134*t295 + t137*t292 + t137*t297 + t140*t293 +
+                t140*t299 + t300*t98 + t364*(e1_y*t324 + e1_z*t327) + t366*(e2_y*t324 + e2_z*t327)
+                + t368*(e3_y*t324 + e3_z*t327) + t390*t410 + t415*t419 + t424*t428 +
+                t448*(-e1_z*t430 + t323*t429) + t451*(e2_y*t449 - e2_z*t430) + t453*(e3_y*t449 -
+                e3_z*t430) + t464*t473 + t477*t478 + t482*t483) + vectors[9]*(t410*t647 +
+                t419*t651 + t428*t655 + t448*(e1_x*t612 + e1_y*t616 + e1_z*t617) + t451*(e2_x*t612
+                + e2_y*t616 + e2_z*t617) + t453*(e3_x*t612 + e3_y*t616 + e3_z*t617) + t473*t606 +
+                t478*t621 + t483*t625 + t667))
+            vectors[19] = (vectors[0]*(t12*t818 + t12*t823 + t130 + t20*t819 + t20*t825 + t4*t817
+                + t4*t821) + vectors[1]*(t180 + t35*t817 + t35*t821 + t40*t818 + t40*t823 +
+                t45*t819 + t45*t825) + vectors[10]*(t448*(e1_x*t876 + e1_y*t872 + e1_z*t875) +
+                t451*(e2_x*t876 + e2_y*t872 + e2_z*t875) + t453*(e3_x*t876 + e3_y*t872 +
+                e3_z*t875) + t761*t844 + t775*t845 + t779*t846 + t796*t832 + t800*t833 + t804*t834
+                + t887) + vectors[11]*(t448*(e1_x*t910 + e1_y*t906 + e1_z*t909) + t451*(e2_x*t910
+                + e2_y*t906 + e2_z*t909) + t453*(e3_x*t910 + e3_y*t906 + e3_z*t909) + t686*t844 +
+                t700*t845 + t704*t846 + t725*t832 + t729*t833 + t733*t834 + t918) +
+                vectors[2]*(t220 + t50*t817 + t50*t821 + t55*t818 + t55*t823 + t60*t819 +
+                t60*t825) + vectors[3]*(t243 + t61*t817 + t61*t821 + t62*t818 + t62*t823 +
+                t63*t819 + t63*t825) + vectors[4]*(t263 + t64*t817 + t64*t821 + t65*t818 +
+                t65*t823 + t66*t819 + t66*t825) + vectors[5]*(t283 + t67*t817 + t67*t821 +
+                t68*t818 + t68*t823 + t69*t819 + t69*t825) + vectors[6]*(t103*t827 + t106*t828 +
+                t109*t826 + t110*t827 + t111*t828 + t364*(e1_x*t831 + e1_z*t830) + t366*(e2_x*t831
+                + e2_z*t830) + t368*(e3_x*t831 + e3_z*t830) + t448*(-e1_x*t835 + 2*e1_z*n_x*t350)
+                + t451*(-e2_x*t835 + 2*e2_z*n_x*t350) + t453*(-e3_x*t835 + 2*e3_z*n_x*t350) +
+                t551*t832 + t553*t833 + t555*t834 + t577*t844 + t581*t845 + t585*t846 + t78*t817 +
+                t78*t821 + t81*t818 + t81*t823 + t819*t84 + t825*t84 + t826*t98) +
+                vectors[7]*(t103*t854 + t106*t856 + t109*t852 + t110*t854 + t111*t856 + t116*t817
+                + t116*t821 + t119*t818 + t119*t823 + t122*t819 + t122*t825 + t364*(e1_x*t859 +
+                e1_y*t861 + e1_z*t858) + t366*(e2_x*t859 + e2_y*t861 + e2_z*t858) +
+                t368*(e3_x*t859 + e3_y*t861 + e3_z*t858) + t448*(e1_x*t864 + e1_y*t865 -
+                t862*t863) + t451*(e2_x*t864 + e2_y*t865 - e2_z*t866) + t453*(e3_x*t864 +
+                e3_y*t865 - e3_z*t866) + t505*t832 + t510*t833 + t515*t834 + t530*t844 + t534*t845
+                + t538*t846 + t852*t98) + vectors[8]*(t103*t79 + t106*t82 + t109*t74 + t110*t79 +
+                t111*t82 + t134*t817 + t134*t821 + t137*t818 + t137*t823 + t140*t819 + t140*t825 +
+                t364*(e1_x*t847 + t550) + t366*(e2_x*t847 + t552) + t368*(e3_x*t847 + t554) +
+                t390*t832 + t415*t833 + t424*t834 + t448*(-e1_x*t849 + 2*e1_z*n_x*t848) +
+                t451*(-e2_x*t849 + 2*e2_z*n_x*t848) + t453*(-e3_x*t849 + 2*e3_z*n_x*t848) +
+                t464*t844 + t477*t845 + t482*t846 + t74*t98) + vectors[9]*(t448*(e1_x*t895 +
+                e1_y*t891 + e1_z*t894) + t451*(e2_x*t895 + e2_y*t891 + e2_z*t894) +
+                t453*(e3_x*t895 + e3_y*t891 + e3_z*t894) + t606*t844 + t621*t845 + t625*t846 +
+                t647*t832 + t651*t833 + t655*t834 + t902))
+            vectors[20] = (vectors[0]*(t12*t923 + t12*t928 + t147 + t20*t924 + t20*t930 + t4*t922
+                + t4*t926) + vectors[1]*(t187 + t35*t922 + t35*t926 + t40*t923 + t40*t928 +
+                t45*t924 + t45*t930) + vectors[10]*(t1002 + t448*(e1_x*t995 + e1_y*t996 +
+                e1_z*t993) + t451*(e2_x*t995 + e2_y*t996 + e2_z*t993) + t453*(e3_x*t995 +
+                e3_y*t996 + e3_z*t993) + t761*t950 + t775*t951 + t779*t952 + t796*t937 + t800*t938
+                + t804*t939) + vectors[11]*(t448*(e1_x*t978 + e1_y*t979 + e1_z*t976) +
+                t451*(e2_x*t978 + e2_y*t979 + e2_z*t976) + t453*(e3_x*t978 + e3_y*t979 +
+                e3_z*t976) + t686*t950 + t700*t951 + t704*t952 + t725*t937 + t729*t938 + t733*t939
+                + t989) + vectors[2]*(t227 + t50*t922 + t50*t926 + t55*t923 + t55*t928 + t60*t924
+                + t60*t930) + vectors[3]*(t247 + t61*t922 + t61*t926 + t62*t923 + t62*t928 +
+                t63*t924 + t63*t930) + vectors[4]*(t267 + t64*t922 + t64*t926 + t65*t923 +
+                t65*t928 + t66*t924 + t66*t930) + vectors[5]*(t287 + t67*t922 + t67*t926 +
+                t68*t923 + t68*t928 + t69*t924 + t69*t930) + vectors[6]*(t103*t117 + t106*t120 +
+                t109*t113 + t110*t117 + t111*t120 + t113*t98 + t364*(e1_y*t953 + t489) +
+                t366*(e2_y*t953 + t507) + t368*(e3_y*t953 + t512) + t448*(-t429*t957 + t954*t956)
+                + t451*(e2_x*t958 - e2_y*t959) + t453*(e3_x*t958 - e3_y*t959) + t551*t937 +
+                t553*t938 + t555*t939 + t577*t950 + t581*t951 + t585*t952 + t78*t922 + t78*t926 +
+                t81*t923 + t81*t928 + t84*t924 + t84*t930) + vectors[7]*(t103*t932 + t106*t933 +
+                t109*t931 + t110*t932 + t111*t933 + t116*t922 + t116*t926 + t119*t923 + t119*t928
+                + t122*t924 + t122*t930 + t364*(e1_x*t935 + e1_y*t936) + t366*(e2_x*t935 +
+                e2_y*t936) + t368*(e3_x*t935 + e3_y*t936) + t448*(e1_x*t940 - t357*t429) +
+                t451*(e2_x*t940 - e2_y*t941) + t453*(e3_x*t940 - e3_y*t941) + t505*t937 +
+                t510*t938 + t515*t939 + t530*t950 + t534*t951 + t538*t952 + t931*t98) +
+                vectors[8]*(t103*t961 + t106*t962 + t109*t960 + t110*t961 + t111*t962 + t134*t922
+                + t134*t926 + t137*t923 + t137*t928 + t140*t924 + t140*t930 + t364*(e1_x*t963 +
+                e1_y*t964 + e1_z*t967) + t366*(e2_x*t963 + e2_y*t964 + e2_z*t967) +
+                t368*(e3_x*t963 + e3_y*t964 + e3_z*t967) + t390*t937 + t415*t938 + t424*t939 +
+                t448*(-e1_x*t969 + e1_z*t970 + t382*t429) + t451*(-e2_x*t969 + e2_y*t971 +
+                e2_z*t970) + t453*(-e3_x*t969 + e3_y*t971 + e3_z*t970) + t464*t950 + t477*t951 +
+                t482*t952 + t960*t98) + vectors[9]*(t1016 + t448*(e1_x*t1008 + e1_y*t1009 +
+                e1_z*t1006) + t451*(e2_x*t1008 + e2_y*t1009 + e2_z*t1006) + t453*(e3_x*t1008 +
+                e3_y*t1009 + e3_z*t1006) + t606*t950 + t621*t951 + t625*t952 + t647*t937 +
+                t651*t938 + t655*t939))
+            vectors[21] = (vectors[10]*(t1027*t761 + t1031*t775 + t1033*t779 + t1034*t796 +
+                t1035*t800 + t1036*t804 + t364*(e1_x*t1056 + e1_y*t1058 + e1_z*t1057) +
+                t366*(e2_x*t1056 + e2_y*t1058 + e2_z*t1057) + t368*(e3_x*t1056 + e3_y*t1058 +
+                e3_z*t1057) + t448*(e1_x*t1061 + e1_y*t1063 + e1_z*t1064) + t451*(e2_x*t1061 +
+                e2_y*t1063 + e2_z*t1064) + t453*(e3_x*t1061 + e3_y*t1063 + e3_z*t1064)) +
+                vectors[11]*(t1027*t686 + t1031*t700 + t1033*t704 + t1034*t725 + t1035*t729 +
+                t1036*t733 + t364*(e1_x*t1066 + e1_y*t1068 + e1_z*t1067) + t366*(e2_x*t1066 +
+                e2_y*t1068 + e2_z*t1067) + t368*(e3_x*t1066 + e3_y*t1068 + e3_z*t1067) +
+                t448*(e1_x*t1072 + e1_y*t1074 + e1_z*t1075) + t451*(e2_x*t1072 + e2_y*t1074 +
+                e2_z*t1075) + t453*(e3_x*t1072 + e3_y*t1074 + e3_z*t1075)) +
+                vectors[6]*(t1027*t577 + t1031*t581 + t1033*t585 + t1034*t551 + t1035*t553 +
+                t1036*t555 + t448*(e1_x*t1030 - t1029*t429 + t661) + t451*(e2_x*t1030 - e2_y*t1032
+                + t665) + t453*(e3_x*t1030 - e3_y*t1032 + t666) + t667) + vectors[7]*(t1027*t530 +
+                t1031*t534 + t1033*t538 + t1034*t505 + t1035*t510 + t1036*t515 + t448*(e1_y*t1039
+                - t1038*t862 + t639*t954) + t451*(e2_x*t1040 + e2_y*t1039 - e2_z*t1041) +
+                t453*(e3_x*t1040 + e3_y*t1039 - e3_z*t1041) + t902) + vectors[8]*(t1016 +
+                t1027*t464 + t1031*t477 + t1033*t482 + t1034*t390 + t1035*t415 + t1036*t424 +
+                t448*(-e1_x*t1043 + e1_z*t1044 + t429*t644) + t451*(-e2_x*t1043 + e2_y*t1045 +
+                e2_z*t1044) + t453*(-e3_x*t1043 + e3_y*t1045 + e3_z*t1044)) +
+                vectors[9]*(t1027*t606 + t1031*t621 + t1033*t625 + t1034*t647 + t1035*t651 +
+                t1036*t655 + t364*(e1_x*t1048 + e1_y*t1047 + e1_z*t1046) + t366*(e2_x*t1048 +
+                e2_y*t1047 + e2_z*t1046) + t368*(e3_x*t1048 + e3_y*t1047 + e3_z*t1046) +
+                t448*(e1_x*t1051 + e1_y*t1053 + e1_z*t1054) + t451*(e2_x*t1051 + e2_y*t1053 +
+                e2_z*t1054) + t453*(e3_x*t1051 + e3_y*t1053 + e3_z*t1054)))
+            vectors[22] = (vectors[10]*(t1086*t761 + t1090*t775 + t1092*t779 + t1093*t796 +
+                t1094*t800 + t1095*t804 + t364*(e1_x*t1107 + e1_y*t1110 + e1_z*t1109) +
+                t366*(e2_x*t1107 + e2_y*t1110 + e2_z*t1109) + t368*(e3_x*t1107 + e3_y*t1110 +
+                e3_z*t1109) + t448*(e1_x*t1113 + e1_y*t1115 + e1_z*t1116) + t451*(e2_x*t1113 +
+                e2_y*t1115 + e2_z*t1116) + t453*(e3_x*t1113 + e3_y*t1115 + e3_z*t1116)) +
+                vectors[11]*(t1086*t686 + t1090*t700 + t1092*t704 + t1093*t725 + t1094*t729 +
+                t1095*t733 + t364*(e1_x*t1118 + e1_y*t1117 + e1_z*t1119) + t366*(e2_x*t1118 +
+                e2_y*t1117 + e2_z*t1119) + t368*(e3_x*t1118 + e3_y*t1117 + e3_z*t1119) +
+                t448*(e1_x*t1122 + e1_y*t1124 + e1_z*t1125) + t451*(e2_x*t1122 + e2_y*t1124 +
+                e2_z*t1125) + t453*(e3_x*t1122 + e3_y*t1124 + e3_z*t1125)) +
+                vectors[6]*(t1086*t577 + t1090*t581 + t1092*t585 + t1093*t551 + t1094*t553 +
+                t1095*t555 + t448*(e1_x*t1102 - t1101*t429 + t793*t862) + t451*(e2_x*t1102 -
+                e2_y*t1104 + e2_z*t1103) + t453*(e3_x*t1102 - e3_y*t1104 + e3_z*t1103) + t813) +
+                vectors[7]*(t1086*t530 + t1090*t534 + t1092*t538 + t1093*t505 + t1094*t510 +
+                t1095*t515 + t448*(e1_y*t1089 - t1088*t862 + t878) + t451*(e2_y*t1089 - e2_z*t1091
+                + t884) + t453*(e3_y*t1089 - e3_z*t1091 + t886) + t887) + vectors[8]*(t1002 +
+                t1086*t464 + t1090*t477 + t1092*t482 + t1093*t390 + t1094*t415 + t1095*t424 +
+                t448*(-e1_x*t1097 + e1_z*t1098 + t429*t783) + t451*(-e2_x*t1097 + e2_y*t1099 +
+                e2_z*t1098) + t453*(-e3_x*t1097 + e3_y*t1099 + e3_z*t1098)) +
+                vectors[9]*(t1086*t606 + t1090*t621 + t1092*t625 + t1093*t647 + t1094*t651 +
+                t1095*t655 + t364*(e1_x*t1128 + e1_y*t1127 + e1_z*t1129) + t366*(e2_x*t1128 +
+                e2_y*t1127 + e2_z*t1129) + t368*(e3_x*t1128 + e3_y*t1127 + e3_z*t1129) +
+                t448*(e1_x*t1133 + e1_y*t1135 + e1_z*t1136) + t451*(e2_x*t1133 + e2_y*t1135 +
+                e2_z*t1136) + t453*(e3_x*t1133 + e3_y*t1135 + e3_z*t1136)))
+            vectors[23] = (vectors[10]*(t1147*t761 + t1151*t775 + t1152*t779 + t1153*t796 +
+                t1154*t800 + t1155*t804 + t364*(e1_x*t1189 + e1_y*t1188 + e1_z*t1187) +
+                t366*(e2_x*t1189 + e2_y*t1188 + e2_z*t1187) + t368*(e3_x*t1189 + e3_y*t1188 +
+                e3_z*t1187) + t448*(e1_x*t1193 + e1_y*t1195 + e1_z*t1196) + t451*(e2_x*t1193 +
+                e2_y*t1195 + e2_z*t1196) + t453*(e3_x*t1193 + e3_y*t1195 + e3_z*t1196)) +
+                vectors[11]*(t1147*t686 + t1151*t700 + t1152*t704 + t1153*t725 + t1154*t729 +
+                t1155*t733 + t364*(e1_x*t1170 + e1_y*t1168 + e1_z*t1171) + t366*(e2_x*t1170 +
+                e2_y*t1168 + e2_z*t1171) + t368*(e3_x*t1170 + e3_y*t1168 + e3_z*t1171) +
+                t448*(e1_x*t1174 + e1_y*t1176 + e1_z*t1177) + t451*(e2_x*t1174 + e2_y*t1176 +
+                e2_z*t1177) + t453*(e3_x*t1174 + e3_y*t1176 + e3_z*t1177)) +
+                vectors[6]*(t1147*t577 + t1151*t581 + t1152*t585 + t1153*t551 + t1154*t553 +
+                t1155*t555 + t448*(e1_x*t1158 - t1157*t429 + t717*t862) + t451*(e2_x*t1158 -
+                e2_y*t1160 + e2_z*t1159) + t453*(e3_x*t1158 - e3_y*t1160 + e3_z*t1159) + t742) +
+                vectors[7]*(t1147*t530 + t1151*t534 + t1152*t538 + t1153*t505 + t1154*t510 +
+                t1155*t515 + t448*(e1_y*t1163 - t1162*t862 + t722*t954) + t451*(e2_x*t1164 +
+                e2_y*t1163 - e2_z*t1165) + t453*(e3_x*t1164 + e3_y*t1163 - e3_z*t1165) + t918) +
+                vectors[8]*(t1147*t464 + t1151*t477 + t1152*t482 + t1153*t390 + t1154*t415 +
+                t1155*t424 + t448*(-e1_x*t1149 + e1_z*t1150 + t983) + t451*(-e2_x*t1149 +
+                e2_z*t1150 + t987) + t453*(-e3_x*t1149 + e3_z*t1150 + t988) + t989) +
+                vectors[9]*(t1147*t606 + t1151*t621 + t1152*t625 + t1153*t647 + t1154*t651 +
+                t1155*t655 + t364*(e1_x*t1180 + e1_y*t1179 + e1_z*t1178) + t366*(e2_x*t1180 +
+                e2_y*t1179 + e2_z*t1178) + t368*(e3_x*t1180 + e3_y*t1179 + e3_z*t1178) +
+                t448*(e1_x*t1183 + e1_y*t1185 + e1_z*t1186) + t451*(e2_x*t1183 + e2_y*t1185 +
+                e2_z*t1186) + t453*(e3_x*t1183 + e3_y*t1185 + e3_z*t1186)))
+            vectors[24] = (vectors[0]*(t1197*t4 + t1198*t12 + t1199*t20) + vectors[1]*(t1197*t35 +
+                t1198*t40 + t1199*t45) + vectors[2]*(t1197*t50 + t1198*t55 + t1199*t60) +
+                vectors[3]*(t1197*t61 + t1198*t62 + t1199*t63) + vectors[4]*(t1197*t64 + t1198*t65
+                + t1199*t66) + vectors[5]*(t1197*t67 + t1198*t68 + t1199*t69) +
+                vectors[6]*(t1197*t78 + t1198*t81 + t1199*t84) + vectors[7]*(t116*t1197 +
+                t119*t1198 + t1199*t122) + vectors[8]*(t1197*t134 + t1198*t137 + t1199*t140))
+            vectors[25] = (vectors[0]*(t12*t1201 + t1200*t4 + t1202*t20) + vectors[1]*(t1200*t35 +
+                t1201*t40 + t1202*t45) + vectors[2]*(t1200*t50 + t1201*t55 + t1202*t60) +
+                vectors[3]*(t1200*t61 + t1201*t62 + t1202*t63) + vectors[4]*(t1200*t64 + t1201*t65
+                + t1202*t66) + vectors[5]*(t1200*t67 + t1201*t68 + t1202*t69) +
+                vectors[6]*(t1200*t78 + t1201*t81 + t1202*t84) + vectors[7]*(t116*t1200 +
+                t119*t1201 + t1202*t122) + vectors[8]*(t1200*t134 + t1201*t137 + t1202*t140))
+            vectors[26] = (vectors[0]*(t12*t1204 + t1203*t4 + t1205*t20) + vectors[1]*(t1203*t35 +
+                t1204*t40 + t1205*t45) + vectors[2]*(t1203*t50 + t1204*t55 + t1205*t60) +
+                vectors[3]*(t1203*t61 + t1204*t62 + t1205*t63) + vectors[4]*(t1203*t64 + t1204*t65
+                + t1205*t66) + vectors[5]*(t1203*t67 + t1204*t68 + t1205*t69) +
+                vectors[6]*(t1203*t78 + t1204*t81 + t1205*t84) + vectors[7]*(t116*t1203 +
+                t119*t1204 + t1205*t122) + vectors[8]*(t1203*t134 + t1204*t137 + t1205*t140))
+            vectors[27] = (vectors[0]*(t12*t1207 + t1206*t4 + t1208*t20) + vectors[1]*(t1206*t35 +
+                t1207*t40 + t1208*t45) + vectors[2]*(t1206*t50 + t1207*t55 + t1208*t60) +
+                vectors[3]*(t1206*t61 + t1207*t62 + t1208*t63) + vectors[4]*(t1206*t64 + t1207*t65
+                + t1208*t66) + vectors[5]*(t1206*t67 + t1207*t68 + t1208*t69) +
+                vectors[6]*(t1206*t78 + t1207*t81 + t1208*t84) + vectors[7]*(t116*t1206 +
+                t119*t1207 + t1208*t122) + vectors[8]*(t1206*t134 + t1207*t137 + t1208*t140))
+            vectors[28] = (vectors[0]*(t12*t1210 + t1209*t4 + t1211*t20) + vectors[1]*(t1209*t35 +
+                t1210*t40 + t1211*t45) + vectors[2]*(t1209*t50 + t1210*t55 + t1211*t60) +
+                vectors[3]*(t1209*t61 + t1210*t62 + t1211*t63) + vectors[4]*(t1209*t64 + t1210*t65
+                + t1211*t66) + vectors[5]*(t1209*t67 + t1210*t68 + t1211*t69) +
+                vectors[6]*(t1209*t78 + t1210*t81 + t1211*t84) + vectors[7]*(t116*t1209 +
+                t119*t1210 + t1211*t122) + vectors[8]*(t1209*t134 + t1210*t137 + t1211*t140))
+            vectors[29] = (vectors[0]*(t12*t1213 + t1212*t4 + t1214*t20) + vectors[1]*(t1212*t35 +
+                t1213*t40 + t1214*t45) + vectors[2]*(t1212*t50 + t1213*t55 + t1214*t60) +
+                vectors[3]*(t1212*t61 + t1213*t62 + t1214*t63) + vectors[4]*(t1212*t64 + t1213*t65
+                + t1214*t66) + vectors[5]*(t1212*t67 + t1213*t68 + t1214*t69) +
+                vectors[6]*(t1212*t78 + t1213*t81 + t1214*t84) + vectors[7]*(t116*t1212 +
+                t119*t1213 + t1214*t122) + vectors[8]*(t1212*t134 + t1213*t137 + t1214*t140))
+            vectors[30] = (vectors[0]*(t12*t1216 + t1215*t4 + t1217*t20) + vectors[1]*(t1215*t35 +
+                t1216*t40 + t1217*t45) + vectors[10]*(t1218*t761 + t1219*t775 + t1220*t779) +
+                vectors[11]*(t1218*t686 + t1219*t700 + t1220*t704) + vectors[2]*(t1215*t50 +
+                t1216*t55 + t1217*t60) + vectors[3]*(t1215*t61 + t1216*t62 + t1217*t63) +
+                vectors[4]*(t1215*t64 + t1216*t65 + t1217*t66) + vectors[5]*(t1215*t67 + t1216*t68
+                + t1217*t69) + vectors[6]*(t1215*t78 + t1216*t81 + t1217*t84 + t1218*t577 +
+                t1219*t581 + t1220*t585) + vectors[7]*(t116*t1215 + t119*t1216 + t1217*t122 +
+                t1218*t530 + t1219*t534 + t1220*t538) + vectors[8]*(t1215*t134 + t1216*t137 +
+                t1217*t140 + t1218*t464 + t1219*t477 + t1220*t482) + vectors[9]*(t1218*t606 +
+                t1219*t621 + t1220*t625))
+            vectors[31] = (vectors[0]*(t12*t1222 + t1221*t4 + t1223*t20) + vectors[1]*(t1221*t35 +
+                t1222*t40 + t1223*t45) + vectors[10]*(t1224*t761 + t1225*t775 + t1226*t779) +
+                vectors[11]*(t1224*t686 + t1225*t700 + t1226*t704) + vectors[2]*(t1221*t50 +
+                t1222*t55 + t1223*t60) + vectors[3]*(t1221*t61 + t1222*t62 + t1223*t63) +
+                vectors[4]*(t1221*t64 + t1222*t65 + t1223*t66) + vectors[5]*(t1221*t67 + t1222*t68
+                + t1223*t69) + vectors[6]*(t1221*t78 + t1222*t81 + t1223*t84 + t1224*t577 +
+                t1225*t581 + t1226*t585) + vectors[7]*(t116*t1221 + t119*t1222 + t122*t1223 +
+                t1224*t530 + t1225*t534 + t1226*t538) + vectors[8]*(t1221*t134 + t1222*t137 +
+                t1223*t140 + t1224*t464 + t1225*t477 + t1226*t482) + vectors[9]*(t1224*t606 +
+                t1225*t621 + t1226*t625))
+            vectors[32] = (vectors[0]*(t12*t1228 + t1227*t4 + t1229*t20) + vectors[1]*(t1227*t35 +
+                t1228*t40 + t1229*t45) + vectors[10]*(t1230*t761 + t1231*t775 + t1232*t779) +
+                vectors[11]*(t1230*t686 + t1231*t700 + t1232*t704) + vectors[2]*(t1227*t50 +
+                t1228*t55 + t1229*t60) + vectors[3]*(t1227*t61 + t1228*t62 + t1229*t63) +
+                vectors[4]*(t1227*t64 + t1228*t65 + t1229*t66) + vectors[5]*(t1227*t67 + t1228*t68
+                + t1229*t69) + vectors[6]*(t1227*t78 + t1228*t81 + t1229*t84 + t1230*t577 +
+                t1231*t581 + t1232*t585) + vectors[7]*(t116*t1227 + t119*t1228 + t122*t1229 +
+                t1230*t530 + t1231*t534 + t1232*t538) + vectors[8]*(t1227*t134 + t1228*t137 +
+                t1229*t140 + t1230*t464 + t1231*t477 + t1232*t482) + vectors[9]*(t1230*t606 +
+                t1231*t621 + t1232*t625))
+            vectors[33] = (vectors[10]*(t1233*t761 + t1234*t775 + t1235*t779) +
+                vectors[11]*(t1233*t686 + t1234*t700 + t1235*t704) + vectors[6]*(t1233*t577 +
+                t1234*t581 + t1235*t585) + vectors[7]*(t1233*t530 + t1234*t534 + t1235*t538) +
+                vectors[8]*(t1233*t464 + t1234*t477 + t1235*t482) + vectors[9]*(t1233*t606 +
+                t1234*t621 + t1235*t625))
+            vectors[34] = (vectors[10]*(t1236*t761 + t1237*t775 + t1238*t779) +
+                vectors[11]*(t1236*t686 + t1237*t700 + t1238*t704) + vectors[6]*(t1236*t577 +
+                t1237*t581 + t1238*t585) + vectors[7]*(t1236*t530 + t1237*t534 + t1238*t538) +
+                vectors[8]*(t1236*t464 + t1237*t477 + t1238*t482) + vectors[9]*(t1236*t606 +
+                t1237*t621 + t1238*t625))
+            vectors[35] = (vectors[10]*(t1239*t761 + t1240*t775 + t1241*t779) +
+                vectors[11]*(t1239*t686 + t1240*t700 + t1241*t704) + vectors[6]*(t1239*t577 +
+                t1240*t581 + t1241*t585) + vectors[7]*(t1239*t530 + t1240*t534 + t1241*t538) +
+                vectors[8]*(t1239*t464 + t1240*t477 + t1241*t482) + vectors[9]*(t1239*t606 +
+                t1240*t621 + t1241*t625))
             vectors[36] = 0.0
             vectors[37] = 0.0
             vectors[38] = 0.0

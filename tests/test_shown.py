@@ -167,7 +167,8 @@ def test_a_campbell_diagram_is_a_table():
     model.fix("root")
     found = campbell(model, [0.0, 5.0, 10.0], (0, 0, 1), count=3)
     title, heads, *rows = repr(found).splitlines()
-    assert title == "3 modes at 3 speeds from 0 to 10 rad/s"
+    assert title == ("3 modes at 3 speeds from 0 to 10 rad/s, in turning axes (nothing turns by "
+                     "itself, so all supports turn, too)")
     assert "[Hz] at 10 rad/s" in heads and len(rows) == 3
     assert float(rows[0].split()[1]) == pytest.approx(found.omega[0, 0] / (2 * np.pi), rel=1e-5)
 

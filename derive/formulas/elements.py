@@ -219,7 +219,7 @@ def element(name: str, summary: str, space: Space, blocks: Sequence[Block],
         tuple(differential(v, time) for v in velocity),
         _sums(blocks, kinetic, strain, potential),
         _power(blocks, lam, constraints, dissipation, load),
-        _losses(blocks, space, dissipation) if kinetic + strain + potential != 0 else (),
+        _losses(blocks, space, dissipation, load) if kinetic + strain + potential != 0 else (),
         tuple(memory))
 
 
@@ -278,12 +278,13 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
     return {name: value for name, value in sums.items() if value != 0}
 
 
-def _losses(blocks, space, dissipation) -> tuple[sp.Expr, ...]:
-    """Forces of the dampers alone."""
-    if dissipation == 0:
+def _losses(blocks, space, dissipation, load) -> tuple[sp.Expr, ...]:
+    """Forces of the dampers, and of what else does work that no energy holds."""
+    if dissipation == 0 and load == 0:
         return ()
     return tuple(entry for block in blocks for entry in space.components(
-        block.direction.kind, conjugate_to(dissipation, block.rate.symbols)))
+        block.direction.kind, conjugate_to(dissipation, block.rate.symbols)
+        - conjugate_to(load, block.direction.symbols)))
 
 
 def _power(blocks, lam, constraints, dissipation, load) -> sp.Expr | None:

@@ -103,37 +103,116 @@ def torsion_spring(planar: bool) -> Element:
                    dissipation=c * rate**2 / 2, memory=memory)
 
 
+ACROSS = "12", "21"                 # axes of couplings: those across a shaft
+COUPLED = "11", "12", "21", "22"
+
+
 def bushing(planar: bool) -> Element:
     """Springs and dampers along and about axes that turn with body a.
 
-    Stretch ``u = E^T R_a^T (x_b - x_a)``, turn ``w``: the sine of the angle along its axis, from
-    the antisymmetric part of ``R_a^T R_b`` (in a plane the angle), along the axes E, too; each axis
-    has its own coefficients.
+    Stretch ``u = E^T R_a^T (x_b - x_a)`` and turn w along the axes E, which have coefficients for
+    each axis. With ``Q = R_a^T R_b``, w is the sine of the angle along its axis, from the
+    antisymmetric part of Q (in a plane the angle). A bearing lets body b turn freely about the
+    direction n: there ``w = n x Q n`` is the tilt of that direction, and n is zero elsewhere.
     """
+    return _between_axes(planar, False)
+
+
+def bearing(planar: bool) -> Element:
+    """A bushing whose axes 1 and 2 are coupled: forces ``-k12 u_2 - c12 u_2'`` along 1 and so on.
+
+    Tilts about these axes are coupled to each other and to the forces. The symmetric parts have an
+    energy or dissipate, the others are forces that do work, by which journal bearings drive whirls.
+    """
+    return _between_axes(planar, True)
+
+
+def _between_axes(planar: bool, coupled: bool) -> Element:
     space = Space(planar)
     own = [constant(space, f"e{k}", "vector", "direction of an axis, in axes of body a")
            for k in range(1, 3 if planar else 4)]
-    constants = [constant(space, "k", "vector", "stiffness along each axis"),
-                 constant(space, "c", "vector", "damping along each axis"),
-                 constant(space, "kt", "axial", "stiffness about each axis"),
-                 constant(space, "ct", "axial", "damping about each axis")]
-    k, c, kt, ct = (q.symbols for q in constants)
+    each = [constant(space, "k", "vector", "stiffness along each axis"),
+            constant(space, "c", "vector", "damping along each axis"),
+            constant(space, "kt", "axial", "stiffness about each axis"),
+            constant(space, "ct", "axial", "damping about each axis")]
     axes = [*(q.symbols for q in own), *[sp.Matrix([0, 0, 1])] * planar]
+    couplings, free = _couplings(space) if coupled else {}, []
     xa, xb = position(space, "a"), position(space, "b")
     ra, rb = rotation(space, "a"), rotation(space, "b")
-    Ra, Rb = ra.state.symbols, rb.state.symbols
-    gap, rate = xb.state.symbols - xa.state.symbols, xb.rate.symbols - xa.rate.symbols
-    stretch = Ra.T * gap
-    speed = Ra.T * rate - cross(ra.rate.symbols, stretch)
-    Q = Ra.T * Rb
-    turn = (sp.Matrix([0, 0, rb.angle - ra.angle]) if planar else
-            sp.Matrix([Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]]) / 2)
-    spin = Q * rb.rate.symbols - ra.rate.symbols
+    Ra = ra.state.symbols
+    stretch, Q = Ra.T * (xb.state.symbols - xa.state.symbols), Ra.T * rb.state.symbols
+    if planar:
+        turn = sp.Matrix([0, 0, rb.angle - ra.angle])
+    else:
+        free = [constant(space, "n", "vector", "direction about which b turns freely, or zero")]
+        n = free[0].symbols
+        turn = (1 - n.dot(n)) * sp.Matrix(
+            [Q[2, 1] - Q[1, 2], Q[0, 2] - Q[2, 0], Q[1, 0] - Q[0, 1]]) / 2 + cross(n, Q * n)
 
-    def quadratic(coefficients, vector):
-        return sum(a * axis.dot(vector)**2
-                   for a, axis in zip(coefficients, axes, strict=True)) / 2
-    return element("planar_" * planar + "bushing", "springs and dampers along and about axes",
-                   space, (xa, xb, ra, rb), (*constants, *own),
-                   strain=quadratic(k, stretch) + quadratic(kt, turn),
-                   dissipation=quadratic(c, speed) + quadratic(ct, spin))
+    def along(what: str) -> tuple[list[sp.Expr], list[sp.Expr]]:
+        """Rates or variations of stretch and turn along the axes."""
+        dxa, dxb, da, db = (getattr(one, what).symbols for one in (xa, xb, ra, rb))
+        du, spin = Ra.T * (dxb - dxa) - cross(da, stretch), Q * db - da
+        if not planar:
+            spin = (1 - n.dot(n)) * spin + n * n.dot(spin) + cross(n, cross(spin, Q * n))
+        return [e.dot(du) for e in axes], [e.dot(spin) for e in axes]
+
+    u, w = [e.dot(stretch) for e in axes], [e.dot(turn) for e in axes]
+    (du, dw), (vu, vw) = along("rate"), along("direction")
+    k, c, kt, ct = (q.symbols for q in each)
+
+    def quadratic(coefficients, values):
+        return sum(a * value**2 for a, value in zip(coefficients, values, strict=True)) / 2
+
+    strain, stiff = _coupled(couplings, "k", u, w, vu, vw) if coupled else (0, 0)
+    dissipation, damped = _coupled(couplings, "c", du, dw, vu, vw) if coupled else (0, 0)
+    what = "bearing" if coupled else "bushing"
+    return element("planar_" * planar + what, "springs and dampers along and about axes"
+                   + ", coupled" * coupled,
+                   space, (xa, xb, ra, rb), (*each, *couplings.values(), *free, *own),
+                   strain=quadratic(k, u) + quadratic(kt, w) + strain,
+                   dissipation=quadratic(c, du) + quadratic(ct, dw) + dissipation,
+                   load=sp.sympify(stiff + damped))
+
+
+def _couplings(space: Space) -> dict[str, Constant]:
+    """Coefficients that couple axes 1 and 2, by name."""
+    kinds = {"k": "stiffness", "c": "damping"}
+    found = {}
+    for key, kind in kinds.items():
+        found |= {key + at: f"{kind}: force along axis {at[0]} by way along {at[1]}"
+                  for at in ACROSS}
+        if space.planar:
+            continue
+        found |= {f"{key}t{at}": f"{kind}: moment about axis {at[0]} by turn about {at[1]}"
+                  for at in ACROSS}
+        found |= {f"{key}ut{at}": f"{kind}: force along axis {at[0]} by turn about {at[1]}"
+                  for at in COUPLED}
+        found |= {f"{key}tu{at}": f"{kind}: moment about axis {at[0]} by way along {at[1]}"
+                  for at in COUPLED}
+    return {name: constant(space, name, "scalar", meaning) for name, meaning in found.items()}
+
+
+def _coupled(coupled: dict[str, Constant], key: str, u: list, w: list, vu: list, vw: list
+             ) -> tuple[sp.Expr, sp.Expr]:
+    """Energy, or half the dissipation, of the symmetric part, and virtual work of the other.
+
+    Of an entry a of the matrix and b opposite to it: ``(a + b) x y / 2`` and
+    ``-(a - b) (y dx - x dy) / 2``.
+    """
+    energy, work = sp.S.Zero, sp.S.Zero
+
+    def add(one: str, opposite: str, x: int, y: int, row: tuple[list, list],
+            column: tuple[list, list]) -> None:
+        nonlocal energy, work
+        a, b = (coupled[key + name].symbols[0] for name in (one, opposite))
+        energy += (a + b) * row[0][x] * column[0][y] / 2
+        work -= (a - b) * (column[0][y] * row[1][x] - row[0][x] * column[1][y]) / 2
+    ways, turns = (u, vu), (w, vw)
+    add("12", "21", 0, 1, ways, ways)
+    if f"{key}t12" in coupled:
+        add("t12", "t21", 0, 1, turns, turns)
+        for i in range(2):
+            for j in range(2):
+                add(f"ut{i + 1}{j + 1}", f"tu{j + 1}{i + 1}", i, j, ways, turns)
+    return energy, work

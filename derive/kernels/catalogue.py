@@ -47,6 +47,8 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "torsion_spring": lambda: forces.torsion_spring(False),
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),
+    "bearing": lambda: forces.bearing(False),
+    "planar_bearing": lambda: forces.bearing(True),
     "planar_bushing": lambda: forces.bushing(True),
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
        for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)

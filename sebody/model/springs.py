@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -85,43 +87,140 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
 def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
             stiffness: ArrayLike = 0.0, damping: ArrayLike = 0.0,
             turning_stiffness: ArrayLike = 0.0, turning_damping: ArrayLike = 0.0,
-            rotation: ArrayLike | None = None, name: str | None = None) -> Element:
+            rotation: ArrayLike | None = None, name: str | None = None,
+            axis: ArrayLike | None = None) -> Element:
     """Springs and dampers along and about axes that turn with `node`, between nodes at one point.
 
     Each coefficient is a number, or one for each axis. Moments follow the sine of the angles:
-    stay well below half a right angle.
+    stay well below half a right angle. About an axis without coefficients, where others have some,
+    `to` may turn freely, as a shaft in a bearing: moments follow the tilt of this axis.
+
+    A bearing may also be given by matrices, with the shaft along the third axis: (2, 2) of the ways
+    across it, or (4, 4) of the ways and of the turns about the same two axes. They need not be
+    symmetric: cross-coupled stiffness drives whirls.
 
     Parameters
     ----------
+    stiffness, damping : number, (3,), (2, 2) or (4, 4) array_like
+        Planar: number, (2,) or (2, 2) [force/length, force time/length; of turns times length].
+    turning_stiffness, turning_damping : number or (3,) array_like
+        Not with (4, 4) [force length, force length time].
     rotation : (3, 3), planar (2, 2), optional
         Rotates the axes of space to those of the bushing at the start, its columns; by default
         they are the same.
+    axis : (3,), optional
+        Direction of a shaft, instead of `rotation`: the third axis. The first two are across it in
+        the order of space: y and z of a shaft along x.
 
     Raises
     ------
     InputError
-        Coefficients that are negative, no rotation, or nodes that do not coincide.
+        Coefficients that are negative, matrices whose symmetric part is not positive, no rotation,
+        or nodes that do not coincide.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")
-    where = f"bushing at {a.name!r} has a coefficient that is negative or no number"
-    lengths = (model.dimension, model.rotation_size)
-    constants: dict[str, float | NDArray] = {
-                 "k": _spread(stiffness, f"{where}: stiffness", lengths[0]),
-                 "c": _spread(damping, f"{where}: damping", lengths[0]),
-                 "kt": _spread(turning_stiffness, f"{where}: turning_stiffness", lengths[1]),
-                 "ct": _spread(turning_damping, f"{where}: turning_damping", lengths[1])}
-    turn = np.eye(model.dimension) if rotation is None else inputs.rotation(
-        rotation, f"bushing at {a.name!r}: rotation", model.dimension)
-    constants |= {f"e{k}": axis for k, axis in enumerate(turn.T, 1)}
-    return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants)
+    turn = _bushing_axes(model, a, rotation, axis)
+    numbers = {"k": _Coefficients.of(model, a, "stiffness", stiffness, turning_stiffness),
+               "c": _Coefficients.of(model, a, "damping", damping, turning_damping)}
+    coupled = any(np.any(one.across) for one in numbers.values())
+    constants: dict[str, float | NDArray] = {}
+    for key, one in numbers.items():
+        constants |= {key: one.along, f"{key}t": one.about}
+        if coupled:
+            constants |= one.couplings(model.planar, key)
+    constants |= {f"e{k}": column for k, column in enumerate(turn.T, 1)}
+    if not model.planar:
+        constants["n"] = _free_axis(turn, *numbers.values())
+    return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants,
+                "bearing" if coupled else "bushing")
+
+
+class _Coefficients(NamedTuple):
+    """Stiffness or damping of a bushing."""
+
+    along: NDArray      # one for each axis
+    about: NDArray
+    across: NDArray     # (4, 4) couplings of ways and turns along axes 1 and 2, zeros on diagonals
+
+    @classmethod
+    def of(cls, model: Mechanism, a: Node, what: str, ways: ArrayLike, turns: ArrayLike
+           ) -> _Coefficients:
+        """What a user gives: numbers, or matrices."""
+        where = f"bushing at {a.name!r} has a coefficient that is negative or no number: "
+        d, size = model.dimension, model.rotation_size
+        if np.ndim(ways) != 2:
+            return cls(_spread(ways, where + what, d),
+                       _spread(turns, where + f"turning_{what}", size), np.zeros((4, 4)))
+        shapes = ((2, 2),) if model.planar else ((2, 2), (4, 4))
+        remedy = "give a matrix of finite numbers, " + " or ".join(
+            f"{rows} x {rows}" for rows, _ in shapes) + ", whose symmetric part is not negative"
+        title = f"bushing at {a.name!r}: {what}"
+        given = inputs.reals(ways, title, remedy)
+        if given.shape not in shapes or not np.isfinite(given).all():
+            raise inputs.refusal(title, ways, remedy)
+        whole = np.zeros((4, 4))
+        whole[:len(given), :len(given)] = given
+        least = np.linalg.eigvalsh((whole + whole.T) / 2)
+        if what == "damping" and least[0] < -1e-12 * np.abs(least).max():
+            raise inputs.refusal(title, ways, remedy)
+        about = _spread(turns, where + f"turning_{what}", size)
+        if len(given) == 4:
+            if np.any(about):
+                raise InputError(f"{title} is 4 x 4 and has the turns in it: leave out "
+                                 f"turning_{what}")
+            about = np.array([*np.diag(given)[2:], 0.0])
+        along = np.zeros(d)
+        along[:2] = np.diag(given)[:2]
+        return cls(along, about, whole - np.diag(np.diag(whole)))
+
+    def couplings(self, planar: bool, key: str) -> dict[str, float]:
+        """By the names that the kernel has for them."""
+        found: dict[str, float] = {}
+        blocks = {"": (0, 0)} if planar else {"": (0, 0), "t": (2, 2), "ut": (0, 2), "tu": (2, 0)}
+        for name, (row, column) in blocks.items():
+            found |= {f"{key}{name}{i + 1}{j + 1}": float(self.across[row + i, column + j])
+                      for i in range(2) for j in range(2) if i != j or len(name) == 2}
+        return found
+
+
+def _free_axis(turn: NDArray, *coefficients: _Coefficients) -> NDArray:
+    """Direction about which a bushing lets turn freely while it resists tilts; zero if none."""
+    resisted = np.any([one.about != 0.0 for one in coefficients], axis=0)
+    coupled = np.array([np.any(one.across[2:]) or np.any(one.across[:, 2:])
+                        for one in coefficients]).any()
+    resisted[:2] |= coupled
+    free = np.flatnonzero(~resisted)
+    return turn[:, free[0]] if len(free) == 1 else np.zeros(3)
+
+
+def _bushing_axes(model: Mechanism, a: Node, rotation: ArrayLike | None, axis: ArrayLike | None
+                  ) -> NDArray:
+    """Axes of a bushing at the start, as columns."""
+    if axis is None:
+        return np.eye(model.dimension) if rotation is None else inputs.rotation(
+            rotation, f"bushing at {a.name!r}: rotation", model.dimension)
+    if rotation is not None or model.planar:
+        raise InputError(f"bushing at {a.name!r}: " + (
+            "a model in a plane has no axis=, leave it out" if model.planar else
+            "give axis= or rotation=, not both"))
+    third = inputs.vector(axis, f"bushing at {a.name!r}: axis", 3)
+    length = np.linalg.norm(third)
+    if not length > 0.0:
+        raise InputError(f"bushing at {a.name!r}: axis has no length: give the shaft's direction")
+    third = third / length
+    k = int(np.argmax(np.abs(third)))
+    first = np.eye(3)[(k + 1) % 3]
+    first = first - first @ third * third
+    first /= np.linalg.norm(first)
+    return np.column_stack([first, np.cross(third, first), third])
 
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node,
          attachments: tuple[Attachment, ...],
-         constants: dict[str, float | NDArray]) -> Element:
+         constants: dict[str, float | NDArray], kind: str | None = None) -> Element:
     name = chosen_name(model, name, f"{what} at {a.name}")
-    kind = model.kind_of(what.replace(" ", "_"))
+    kind = model.kind_of(kind or what.replace(" ", "_"))
     model.loads.append(Element(name, kind, attachments, constants))
     return model.loads[-1]
 

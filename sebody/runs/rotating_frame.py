@@ -5,11 +5,19 @@ as R exp(theta). Then dv = xi' + W x xi, da = xi'' + 2 W x xi' + W x (W x xi), a
 W of the node dOmega = theta' + W x theta, dA = theta'' + W x theta'. This holds for the ends of
 rigid links, too, whose xi follows from those of root and arms: so element matrices are summed for
 all coordinates, in global axes, combined, and only then reduced to the unknowns.
+
+Where some parts turn and others stand (`Turning`), every unknown is in axes of its own part, and W
+is that of this part: the end of a link has a share of its motion from each of root and arms.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_matrix, diags
 
 from sebody.assembly.axes import in_frames
 from sebody.basics import inputs
@@ -21,14 +29,22 @@ from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
 
 
-class Spin:
-    """A steady rotation of everything about the origin."""
+class Turning(NamedTuple):
+    """How a part turns: about a line through a point, at a multiple of the spin."""
 
-    def __init__(self, velocity: NDArray, planar: bool):
-        self.velocity, self.planar = velocity, planar
+    point: NDArray
+    factor: float
+
+
+class Spin:
+    """A steady rotation about the origin of everything, or of the parts that are given."""
+
+    def __init__(self, velocity: NDArray, planar: bool,
+                 parts: Mapping[DofBlock, Turning] | None = None):
+        self.velocity, self.planar, self.parts = velocity, planar, parts
 
     @classmethod
-    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> "Spin":
+    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> Spin:
         """The spin a user gives, none by default.
 
         Raises
@@ -42,9 +58,15 @@ class Spin:
         return cls(np.array(inputs.number(velocity, "spin", remedy="give a number")) if planar else
                    inputs.vector(velocity, "spin", 3, remedy="give three numbers"), planar)
 
-    def times(self, factor: float) -> "Spin":
+    def times(self, factor: float) -> Spin:
         """The spin multiplied by a factor."""
-        return Spin(factor * self.velocity, self.planar)
+        return Spin(factor * self.velocity, self.planar, self.parts)
+
+    def turning(self, dof_block: DofBlock) -> Turning | None:
+        """How a block turns; None of one that stands."""
+        if self.parts is None:
+            return Turning(np.zeros(2 if self.planar else 3), 1.0)
+        return self.parts.get(dof_block)
 
     @property
     def rotates(self) -> bool:
@@ -63,11 +85,16 @@ class Spin:
         if not self.rotates:
             return
         for dof_block, at in _dof_blocks(run):
+            turns = self.turning(dof_block)
+            if turns is None:
+                continue
             if dof_block.rotational:
-                state.v[at] = self.velocity if self.planar else _material(run, dof_block, self)
+                state.v[at] = turns.factor * (self.velocity if self.planar else
+                                              _material(run, dof_block, self.velocity))
             else:
-                state.v[at] = self.across @ state.q[at]
-                state.a[at] = self.across @ state.v[at]
+                across = turns.factor * self.across
+                state.v[at] = across @ (state.q[at] - turns.point)
+                state.a[at] = across @ state.v[at]
 
     @property
     def across(self) -> NDArray:
@@ -76,20 +103,42 @@ class Spin:
             return float(self.velocity) * np.array([[0.0, -1.0], [1.0, 0.0]])
         return skew(self.velocity)
 
-    def operators(self, run: Simulation | Result) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+    def moved(self, run: Simulation | Result, G: csc_matrix
+              ) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
         """Derivatives of velocity and acceleration by motion, and of acceleration by its rate.
 
-        Of all coordinates, in global axes.
+        Of all coordinates, in global axes, by the unknowns.
+
+        Parameters
+        ----------
+        G : (total, unknowns)
+            `motion`.
+        """
+        factors = np.zeros(run.numbering.free)
+        for dof_block, at in _dof_blocks(run):
+            turns = self.turning(dof_block)
+            if dof_block.solved and turns is not None:
+                factors[at] = turns.factor
+        found = [csc_matrix(G.shape) for _ in range(3)]
+        for factor in np.unique(factors[factors != 0.0]):
+            own = G @ diags((factors == factor).astype(float))
+            for k, operator in enumerate(self.operators(run, factor)):
+                found[k] = found[k] + operator @ own
+        return tuple(found)
+
+    def operators(self, run: Simulation | Result, factor: float = 1.0
+                  ) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+        """The same by all coordinates, as if all were in axes that turn at a multiple of the spin.
         """
         velocity, place, rate = (_Blocks() for _ in range(3))
         for dof_block, at in _dof_blocks(run):
             if not dof_block.rotational:
-                across = self.across
+                across = factor * self.across
                 velocity.add(at, at, across)
                 place.add(at, at, across @ across)
                 rate.add(at, at, 2.0 * across)
             elif not self.planar:
-                across = skew(_material(run, dof_block, self))
+                across = skew(_material(run, dof_block, factor * self.velocity))
                 velocity.add(at, at, across)
                 rate.add(at, at, across)
         total = run.numbering.total
@@ -228,8 +277,8 @@ def _rotation(run: Simulation | Result, dof_block: DofBlock) -> NDArray:
     return run.arrays_of_loop[1].R[9 * k:9 * k + 9].reshape(3, 3)
 
 
-def _material(run: Simulation | Result, dof_block: DofBlock, spin: Spin) -> NDArray:
-    return _rotation(run, dof_block).T @ spin.velocity
+def _material(run: Simulation | Result, dof_block: DofBlock, velocity: NDArray) -> NDArray:
+    return _rotation(run, dof_block).T @ velocity
 
 
 def _lever(run: Simulation | Result, rotation: DofBlock, arm: NDArray) -> NDArray:

@@ -34,10 +34,10 @@ def rotating(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, NDArray]
 def turning(run: Simulation | Result, spin: Spin) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
     """Mass, damping and stiffness in axes that rotate with the spin; see `rotating_frame`."""
     mass, damping, stiffness = (weighted(run, *weights) for weights in np.eye(3))
-    velocity, place, rate = spin.operators(run)
     G = motion(run)
-    return (G.T @ mass @ G, G.T @ (damping + mass @ rate) @ G,
-            G.T @ (stiffness + damping @ velocity + mass @ place) @ G
+    velocity, place, rate = spin.moved(run, G)
+    return (G.T @ mass @ G, G.T @ (damping @ G + mass @ rate),
+            G.T @ (stiffness @ G + damping @ velocity + mass @ place)
             + of_levers(run, run.arrays_of_loop[1].residual))
 
 

@@ -19,11 +19,13 @@ from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import pace
 from sebody.runs.simulation import Simulation, Standstill
 from sebody.runs.tuning import unbend
+from sebody.runs.turning_parts import parts_of
 
+TOLERANCE = 1e-11           # of the last correction, by default
 STICKING = 1e-7             # of extents: by which the loads move what sticks, no more
 
 
-def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = 1e-11,
+def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = TOLERANCE,
                 spin: ArrayLike | None = None, unstable: str = "leave") -> Result:
     """Equilibrium under gravity and the loads of a time, applied in equal steps.
 
@@ -36,8 +38,10 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     tolerance : float
         Of the last correction, relative to the model's characteristic length or in radians.
     spin : (3,) array_like or float, optional
-        Angular velocity of a frame about the origin in which everything rests, fixed nodes,
-        supports and loads included [1/time]; a number in a plane.
+        Angular velocity of a steady rotation about an axis through the origin [1/time]; a number
+        in a plane. What the model lets turn freely about this axis turns, with all that bodies,
+        links, welds or gears tie to it, and the rest stands. Where nothing turns by itself,
+        everything rests in a frame that turns, fixed nodes, supports and loads included.
     unstable : {"leave", "keep"}
         What becomes of a state that is not stable, as of a column above its buckling load: it is
         left for a stable one, which the structure moves to, or kept, with a warning. Nothing is
@@ -66,9 +70,28 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
     _refuse_states(model)
     run = _at_rest(model, t)
+    given = Spin.of(run, spin)
+    return _equilibrium(run, parts_of(model, given) if given.rotates else given, steps, tolerance,
+                        unstable)
+
+
+def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
+    """Equilibrium of a steady rotation of everything, or of the parts that the spin has.
+
+    Raises
+    ------
+    SimulationError
+        As `equilibrium`.
+    """
+    _refuse_states(model)
+    return _equilibrium(_at_rest(model, 0.0), spin, steps, TOLERANCE, "leave")
+
+
+def _equilibrium(run: Simulation, spin: Spin, steps: int, tolerance: float, unstable: str
+                 ) -> Result:
     memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
                  "give fewer")
-    path = Loading(run, Spin.of(run, spin), steps, tolerance, unstable == "keep")
+    path = Loading(run, spin, steps, tolerance, unstable == "keep")
     try:
         path.follow()
     except SimulationError as error:

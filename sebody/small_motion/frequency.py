@@ -19,14 +19,15 @@ from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
-from sebody.model.parts import Element
+from sebody.model.parts import Element, Node
 from sebody.pictures.frequency_pictures import save_response
 from sebody.results.naming import component_names
 from sebody.results.result import Result
-from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.linearization import small_motion
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
+from sebody.small_motion.rotation.azimuths import steady
+from sebody.small_motion.rotation.views import view
 
 HEADS = "quantity", "largest amplitude", "phase [deg]", "at [Hz]"
 
@@ -80,7 +81,8 @@ class FrequencyResponse:
 
 
 def frequency_response(run: Simulation | Result, load: str, quantities: str | Iterable[str],
-                       omega: ArrayLike, spin: ArrayLike | None = None) -> FrequencyResponse:
+                       omega: ArrayLike, spin: ArrayLike | None = None, frame: str = "auto",
+                       hub: Node | str | None = None) -> FrequencyResponse:
     """Response of quantities to a load of harmonic amplitude, about the state of a run.
 
     Parameters
@@ -96,8 +98,11 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     omega : (m,)
         Angular frequencies [1/time].
     spin : (3,) array_like or float, optional
-        Angular velocity of the axes in which the motion is described, as for `linearize`; vectors
-        are those in these axes as they lie at the instant.
+        Angular velocity of a steady rotation of what turns, see `modes`.
+    frame, hub
+        The axes in which the motion is told, see `modes`. Loads and vectors are those in these
+        axes as they lie at the instant: in standing ones a load on a rotor keeps its direction in
+        space, in turning ones one on a support turns with the rotor.
 
     Returns
     -------
@@ -121,17 +126,18 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
     for name in names:
         inputs.name(name, "name of a quantity")
     refuse_unmoved(names, "harmonic response")
-    steady = Spin.of(run, spin)
-    matrices = small_motion(run, steady)
-    forces, push = by_amplitude(run, _load(run, load))
-    X = _answers(matrices, push, omega)
-    w = 1j * omega[:, None]
-    along = moves(run, steady, *(np.concatenate([z.real, z.imag]) for z in (X, w * X, w**2 * X)))
-    pushed = np.zeros((2 * len(omega), forces.size))
-    pushed[:len(omega)] = forces            # the load is real
-    return FrequencyResponse(load, omega, {
-        name: values[:len(omega)] + 1j * values[len(omega):]
-        for name, values in differences(run, names, along, pushed).items()})
+    axes = view(run, spin, frame, hub)
+    with steady(run, axes.spin):
+        matrices = small_motion(run, axes)
+        forces, push = by_amplitude(run, _load(run, load))
+        X = _answers(matrices, axes.pushed(run, push), omega)
+        w = 1j * omega[:, None]
+        along = moves(run, axes, *(np.concatenate([z.real, z.imag]) for z in (X, w * X, w**2 * X)))
+        pushed = np.zeros((2 * len(omega), forces.size))
+        pushed[:len(omega)] = forces            # the load is real
+        return FrequencyResponse(load, omega, {
+            name: values[:len(omega)] + 1j * values[len(omega):]
+            for name, values in differences(run, names, along, pushed).items()})
 
 
 def _load(run: Simulation | Result, name: str) -> Element:

@@ -101,8 +101,10 @@ def _of_motion(run: Simulation | Result, spin: Spin, own: Motion) -> Input:
     for coordinate, its_port, _, factor in numbering.prescribed:
         if its_port == port:
             moved[coordinate] = factor
-    if spin.rotates and any(np.abs(operator @ moved).max() > STILL * np.abs(moved).max()
-                            for operator in spin.operators(run)):
+    turns = spin.turning(own.place.dof_block)
+    if spin.rotates and turns is not None and any(
+            np.abs(operator @ moved).max() > STILL * np.abs(moved).max()
+            for operator in spin.operators(run, turns.factor)):
         raise InputError(f"motion {own.name!r} rotates in axes that spin: give one along the axis "
                          "of the spin, or a load")
     G = motion(run)

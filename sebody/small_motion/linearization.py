@@ -15,25 +15,30 @@ from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
 from sebody.basics.tabular import brief, counted
+from sebody.model.parts import Node
 from sebody.reduction.massless import Condensed, condensed
 from sebody.results.contact_states import states
 from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.limits.watch import Watch
-from sebody.runs.rotating_frame import Spin, fastest_spin
+from sebody.runs.rotating_frame import fastest_spin
 from sebody.runs.simulation import Simulation
-from sebody.runs.state_derivatives import derivative, turning
+from sebody.runs.state_derivatives import derivative
 from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.small_motion import mode_tables
-from sebody.small_motion.eigenvalues import NEGLIGIBLE, eigenvalues, undamped
+from sebody.small_motion.eigenvalues import NEGLIGIBLE, Eigenvalues, eigenvalues, undamped
 from sebody.small_motion.pressed_friction import without_multipliers
+from sebody.small_motion.rotation.periodic import exponents
+from sebody.small_motion.rotation.views import View, view
 from sebody.small_motion.shapes import Shapes
 
 SPINS = 1e-3        # of the lowest eigenvalue: a slower rotation changes nothing that one sees
 
 
-def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray, NDArray]:
+def small_motion(run: Simulation | Result, axes: View) -> tuple[NDArray, NDArray, NDArray]:
     """Mass, damping and stiffness of all unknowns, multipliers included, in their own axes.
+
+    About a rotation the motion is told in the axes of an analysis.
 
     Raises
     ------
@@ -46,9 +51,8 @@ def small_motion(run: Simulation | Result, spin: Spin) -> tuple[NDArray, NDArray
     watch = run.watch if isinstance(run, Simulation) else Watch()
     watch.look(run.model, run.numbering, run.state.now[None].copy())
     user_faults.forget(run.model)
-    matrices = (turning(run, spin) if spin.rotates else
-                tuple(derivative(run, *weights) for weights in np.eye(3)))
-    M, C, K = (A.toarray() for A in matrices)
+    M, C, K = (axes.matrices(run) if axes.spin.rotates else
+               tuple(derivative(run, *weights).toarray() for weights in np.eye(3)))
     did = user_faults.fault(run.model, -np.inf)     # which may concern what is fixed alone
     if not (did or all(np.isfinite(A).all() for A in (K, C, M))):
         did = "its forces are not finite"
@@ -79,23 +83,32 @@ class Linearization(NamedTuple):
     __repr__ = brief
 
 
-def linearize(run: Simulation | Result, spin: ArrayLike | None = None) -> Linearization:
+def linearize(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = "auto",
+              hub: Node | str | None = None) -> Linearization:
     """Matrices of small motion about the state a run, or an equilibrium, has reached.
 
     Parameters
     ----------
     spin : (3,) array_like or float, optional
-        Angular velocity [1/time] of the axes the motion is described in: that of a steady rotation.
+        Angular velocity [1/time] of a steady rotation of what turns.
         Without one, the matrices of a moving state are those of the instant.
+    frame, hub
+        The axes the motion is told in, see `modes`.
 
     Raises
     ------
     InputError
-        A state that cannot be evaluated, or a wrong spin.
+        A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
+        constant.
     """
     inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
                     "of an equilibrium")
-    M, C, K = small_motion(run, Spin.of(run, spin))
+    return linearized(run, view(run, spin, frame, hub))
+
+
+def linearized(run: Simulation | Result, axes: View) -> Linearization:
+    """Matrices of small motion in the axes of an analysis."""
+    M, C, K = small_motion(run, axes)
     n = len(K)
     multipliers = np.flatnonzero(run.system.is_multiplier[:n])
     moving = np.setdiff1d(np.arange(n), multipliers)
@@ -226,6 +239,8 @@ class Modes(NamedTuple):
     of_names: Shapes
     rounding: NDArray   # (m,) how far rounding may move the values [1/time]
     following: int = 0  # motions without mass, which follow the others statically
+    frame: str = ""     # axes they are told in, of a rotation: see `modes`
+    reason: str = ""    # why these
 
     def __repr__(self) -> str:
         return mode_tables.text(self._title, self.values)
@@ -236,7 +251,8 @@ class Modes(NamedTuple):
 
     @property
     def _title(self) -> str:
-        return f"{len(self.values)} modes of small motion" + _said(self.following)
+        axes = f" in {self.frame} axes ({self.reason})" if self.frame else ""
+        return f"{len(self.values)} modes of small motion{axes}" + _said(self.following)
 
     @property
     def frequency(self) -> NDArray:
@@ -263,24 +279,76 @@ class Modes(NamedTuple):
         return self.values.real
 
 
-def modes(run: Simulation | Result, spin: ArrayLike | None = None) -> Modes:
+def modes(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = "auto",
+          hub: Node | str | None = None) -> Modes:
     """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`.
 
     Where nothing takes or gives energy, as in undamped gyroscopic motion, and the stiffness is
     positive, growth is zero by construction. Otherwise a growth below `Modes.rounding` is none.
 
     Of what spins without `spin=` the matrices are those of the instant: a warning says so.
+
+    Parameters
+    ----------
+    run : Simulation or Result
+    spin : (3,) array_like or float, optional
+        Angular velocity of a steady rotation [1/time]. What the model lets turn freely about its
+        direction turns, with all that bodies, links, welds or gears tie to it; the rest stands.
+        Where nothing turns by itself, supports turn with everything.
+    frame : {"auto", "standing", "turning", "multiblade", "floquet"}
+        Axes in which the motion is told. Its matrices are constant in ``standing`` ones, if what
+        turns is axisymmetric, however it is held; in ``turning`` ones, if what stands is isotropic
+        about the axis; but for a ripple that is averaged in ``multiblade`` ones of three or more
+        equal blades. Otherwise motion is periodic, and values are exponents of the multipliers of a
+        revolution, ``floquet``, with the frequency of the largest harmonic in standing axes. By
+        default the first of these that holds, which is found by turning the model. `Modes.frame`
+        and `Modes.reason` say which was taken, and why.
+    hub : Node or str, optional
+        A node on the axis of what turns: where blades join, or where there are several such parts.
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
+        constant.
     """
-    M, C, K, free = linearize(run, spin)[:4]
+    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
+                    "of an equilibrium")
+    found = modes_in(run, view(run, spin, frame, hub))
+    if spin is None:
+        warn_of_spin(run, np.abs(found.values), "modes")
+    return found
+
+
+def _with_double_zeros(roots: Eigenvalues) -> Eigenvalues:
+    """With the value 0 twice where rounding made a pair of it: of a turn without stiffness."""
+    zero = np.abs(roots.values) <= 2.0 * roots.rounding
+    again = np.concatenate([np.flatnonzero(zero & (roots.values.imag > 0.0)),
+                            np.arange(len(zero))])
+    values = np.where(zero, 0.0, roots.values)[again]
+    order = np.argsort(values.imag, kind="stable")
+    return Eigenvalues(values[order], roots.shapes[:, again[order]], roots.rounding[again[order]])
+
+
+def modes_in(run: Simulation | Result, axes: View) -> Modes:
+    """Eigenvalues and shapes in the axes of an analysis."""
+    if axes.frame == "floquet" and axes.speed:
+        found = exponents(axes.revolution(run), axes.speed)
+        order = np.argsort(found.values.imag, kind="stable")
+        shapes = axes.shapes(run, found.shapes[:, order])
+        return Modes(found.values[order],
+                     shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300), Shapes(run),
+                     found.rounding[order], 0, axes.frame, axes.reason)
+    M, C, K, free = linearized(run, axes)[:4]
     own = _with_mass(M, K, C)
     roots = eigenvalues(own.mass, own.damping, own.stiffness)
-    if spin is None:
-        warn_of_spin(run, np.abs(roots.values), "modes")
+    if axes.spin.parts is not None:
+        roots = _with_double_zeros(roots)
     # on integrals of controllers' states nothing depends: each has the value 0, which is no mode;
     # rounding may make a conjugate pair of two of these, of which one value is here
     nearest = np.argsort(np.abs(roots.values), kind="stable")
     counts = np.cumsum(np.where(roots.values[nearest].imag > 0.0, 2, 1))
     order = np.sort(nearest[counts > len(hidden_states(run.model, run.numbering))])
-    shapes = free @ (own.motions @ roots.shapes[:, order])
+    shapes = axes.shapes(run, free @ (own.motions @ roots.shapes[:, order]))
     return Modes(roots.values[order], shapes / np.maximum(np.linalg.norm(shapes, axis=0), 1e-300),
-                 Shapes(run), roots.rounding[order], own.following)
+                 Shapes(run), roots.rounding[order], own.following, axes.frame, axes.reason)

@@ -24,9 +24,10 @@ from sebody.results import rotations
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 from sebody.results.tapes import States
-from sebody.runs.rotating_frame import Spin, by_element, motion
+from sebody.runs.rotating_frame import by_element, motion
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import derivative
+from sebody.small_motion.rotation.views import View
 
 MOVING = {NOW, FORCE, LOAD}     # kinds of numbers whose change along a motion is exact
 UNMOVED, ADDED_UP = ("t", "energy.external_work"), ".work"     # quantities that do not answer
@@ -62,15 +63,19 @@ def refuse_unmoved(names: Iterable[str], what: str) -> None:
                              "periodic; name a position, a force or a power")
 
 
-def moves(run: Simulation | Result, spin: Spin, unknowns: NDArray, rates: NDArray,
+def moves(run: Simulation | Result, axes: View, unknowns: NDArray, rates: NDArray,
           seconds: NDArray) -> Moves:
-    """Motion of all coordinates by that of the unknowns (k, n) and its rates, in their own axes."""
-    G = motion(run).toarray().T
-    q, v, a = unknowns @ G, rates @ G, seconds @ G
-    if spin.rotates:
-        velocity, place, turning = spin.operators(run)
-        a = a + v @ turning.T + q @ place.T
-        v = v + q @ velocity.T
+    """Motion of all coordinates by that of the unknowns (k, n) and its rates, in their own axes.
+
+    The unknowns are told in the axes of an analysis.
+    """
+    unknowns, rates, seconds = axes.base(run, unknowns, rates, seconds)
+    G = motion(run)
+    q, v, a = (one @ G.T for one in (unknowns, rates, seconds))
+    if axes.spin.rotates:
+        velocity, place, turning = axes.spin.moved(run, G)
+        a = a + rates @ turning.T + unknowns @ place.T
+        v = v + unknowns @ velocity.T
     return Moves(q, v, a)
 
 

@@ -21,14 +21,17 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs as given
 from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief
+from sebody.model.parts import Node
 from sebody.results.naming import component_names
 from sebody.results.result import Result
-from sebody.runs.rotating_frame import Spin, motion
+from sebody.runs.rotating_frame import motion
 from sebody.runs.simulation import Simulation
 from sebody.small_motion import inputs_of_motion, realization
 from sebody.small_motion.constrained_motion import ConstrainedMotion
 from sebody.small_motion.linearization import small_motion
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
+from sebody.small_motion.rotation.azimuths import steady
+from sebody.small_motion.rotation.views import View, view
 
 if TYPE_CHECKING:
     from control import StateSpace as ControlSystem
@@ -153,7 +156,8 @@ class StateSpace(NamedTuple):
 
 
 def state_space(run: Simulation | Result, inputs: str | Iterable[str],
-                outputs: str | Iterable[str], spin: ArrayLike | None = None) -> StateSpace:
+                outputs: str | Iterable[str], spin: ArrayLike | None = None, frame: str = "auto",
+                hub: Node | str | None = None) -> StateSpace:
     """Linear model between inputs and outputs about the state a run, or an equilibrium, reached.
 
     Parameters
@@ -168,7 +172,9 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     outputs : str or iterable of str
         Names of quantities, as of a `Result`. Those with components are several outputs.
     spin : (3,) array_like or float, optional
-        Angular velocity of the axes in which the motion is described, as for `linearize`.
+        Angular velocity of a steady rotation of what turns, see `modes`.
+    frame, hub
+        The axes in which the motion is told, see `modes`.
 
     Returns
     -------
@@ -188,16 +194,25 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     wanted = _listed(outputs, "outputs", "name of a quantity")
     refuse_unmoved(wanted, "linear model")
     _refuse_powers_of_loads(run, names, wanted)
-    steady = Spin.of(run, spin)
-    matrices = small_motion(run, steady)
-    drives = [inputs_of_motion.found(run, steady, name) for name in names]
-    axes = motion(run)[:run.numbering.free].toarray()   # of the unknowns, to global ones
-    system = ConstrainedMotion(run, [axes @ X @ axes.T for X in matrices],
-                               [one._replace(pushes=one.pushes @ axes.T) for one in drives])
+    axes = view(run, spin, frame, hub)
+    if axes.frame == "multiblade":
+        raise InputError("multi-blade coordinates have no names that states could have: ask for "
+                         "modes or a frequency response")
+    with steady(run, axes.spin):
+        return _in_axes(run, names, wanted, axes)
+
+
+def _in_axes(run: Simulation | Result, names: list[str], wanted: list[str], axes: View
+             ) -> StateSpace:
+    """The model about a state whose rates are those of the rotation."""
+    drives = [inputs_of_motion.found(run, axes.spin, name) for name in names]
+    own = motion(run)[:run.numbering.free].toarray()    # axes of the unknowns, to global ones
+    system = ConstrainedMotion(run, [own @ X @ own.T for X in small_motion(run, axes)],
+                               [one._replace(pushes=one.pushes @ own.T) for one in drives])
     A, B = system.matrices()
-    unknowns = [z @ axes for z in system.motions(A, B)]
+    unknowns = [z @ own for z in system.motions(A, B)]
     amplitudes, moved = system.amplitudes(), np.array([one.motion for one in drives])
-    along = moves(run, steady, *unknowns).plus(*(u @ moved for u in amplitudes))
+    along = moves(run, axes, *unknowns).plus(*(u @ moved for u in amplitudes))
     pushed = amplitudes[0] @ np.array([one.elements for one in drives])
     answers = differences(run, wanted, along, pushed)
     Y = np.hstack([answers[name].reshape(len(pushed), -1) for name in wanted])

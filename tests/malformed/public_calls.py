@@ -120,14 +120,17 @@ ANALYSIS = {
         "quantity": "tip.position", "kind": "at", "time": 0.1, "norm": False}),
     "frequency_response": Call(an.frequency_response, lambda: {
         "run": hanging(), "load": "push", "quantities": "load.position", "omega": [1.0, 2.0],
-        "spin": None}),
+        "spin": None, "frame": "auto", "hub": None}),
     "campbell": Call(an.campbell, lambda: {
-        "model": shafts(), "speeds": [0.0, 1.0], "axis": (0.0, 0.0, 1.0), "count": 2, "steps": 2}),
+        "model": shafts(), "speeds": [0.0, 1.0], "axis": (0.0, 0.0, 1.0), "count": 2, "steps": 2,
+        "frame": "auto", "hub": None}),
     "equilibrium": Call(an.equilibrium, lambda: {
         "model": pendulum(), "steps": 2, "t": 0.0, "tolerance": 1e-9, "spin": None,
         "unstable": "leave"}),
-    "linearize": Call(an.linearize, lambda: {"run": hanging(), "spin": None}),
-    "modes": Call(an.modes, lambda: {"run": hanging(), "spin": None}),
+    "linearize": Call(an.linearize, lambda: {
+        "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
+    "modes": Call(an.modes, lambda: {
+        "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
     "vibrations": Call(an.vibrations, lambda: {"run": hanging(), "count": 1}),
     "energy_gain": Call(an.energy_gain, lambda: {"model": mechanism(), "until": 0.1}),
     "resume": Call(an.resume, lambda: {"model": mechanism(), "path": "none.npz"}),

@@ -35,7 +35,7 @@ def test_undamped_shafts_neither_grow_nor_decay(bodies, inertia, share):
     the turn about the axis, which has no stiffness, it is the root of that of the stiffness.
     """
     spin = share * CRITICAL * AXIS
-    found = modes(equilibrium(shaft(bodies, inertia), 2, spin=spin), spin)
+    found = modes(equilibrium(shaft(bodies, inertia), 2, spin=spin), spin, "turning")
     assert np.abs(found.growth).max() < 1e-9
     assert np.all(np.abs(found.growth) <= found.rounding)
     turning = found.omega < 1.0
@@ -44,7 +44,8 @@ def test_undamped_shafts_neither_grow_nor_decay(bodies, inertia, share):
 
 
 def test_campbell_diagrams_show_no_growth_of_rounding():
-    found = campbell(shaft(8, "d"), CRITICAL * np.array([0.25, 0.5, 0.75]), AXIS, count=6, steps=1)
+    found = campbell(shaft(8, "d"), CRITICAL * np.array([0.25, 0.5, 0.75]), AXIS, count=6, steps=1,
+                     frame="turning")
     assert np.abs(found.growth).max() < 1e-9
 
 

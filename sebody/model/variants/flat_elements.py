@@ -212,19 +212,32 @@ def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
     Where coefficients along axes are equal, any axes will do.
     """
     axes = np.array([one.constants[f"e{k}"] for k in (1, 2, 3)]) @ flat.plane.axes
+    tilted = [name for name in one.constants if name[1:2] in ("t", "u") and len(name) > 2]
+    if any(one.number(name) for name in tilted):
+        raise InputError(f"{one.name!r} couples tilts, which leave the plane")
     of = {name: axes.T @ np.diag(one.constants[name]) @ axes for name in ("k", "c", "kt", "ct")}
+    for name in ("k", "c") if one.kind == "bearing" else ():
+        across = np.zeros((3, 3))
+        across[0, 1], across[1, 0] = (one.number(name + at) for at in ("12", "21"))
+        of[name] = of[name] + axes.T @ across @ axes
     turn = np.eye(3)
     if abs(axes[:, 2]).max() > 1.0 - PARALLEL:      # of one axis
         first = np.delete(axes, np.argmax(abs(axes[:, 2])), axis=0)[0]
         turn[:2, 0], turn[:2, 1] = first[:2], [-first[1], first[0]]
     for name, matrix in of.items():
         turned = of[name] = turn.T @ matrix @ turn
-        if np.abs(turned - np.diag(np.diag(turned))).max() > 1e-9 * np.abs(turned).max():
+        held = turned - np.diag(np.diag(turned))
+        if name in ("k", "c") and one.kind == "bearing":
+            held[:2, :2] = 0.0
+        if np.abs(held).max() > 1e-9 * np.abs(turned).max():
             raise InputError(f"{one.name!r} has other coefficients along axes that are neither in "
                              "the plane nor normal to it")
     kept: dict[str, NDArray] = {name: np.diag(matrix)[:2] if name in ("k", "c") else
                                 np.diag(matrix)[2:] for name, matrix in of.items()}
-    return "planar_bushing", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
+    if one.kind == "bearing":
+        for name in ("k", "c"):
+            kept |= {f"{name}12": of[name][0, 1], f"{name}21": of[name][1, 0]}
+    return f"planar_{one.kind}", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
 
 
 def _turn_motor(flat: Flattening, one: Element) -> tuple[str, dict]:
@@ -245,6 +258,6 @@ def _along(flat: Flattening, one: Element) -> tuple[str, dict]:
 ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "rigid_body": _rigid_body, "point_mass": _unchanged, "force": _force, "follower_force": _force,
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
-    "torsion_spring": _torsion_spring, "bushing": _bushing,
+    "torsion_spring": _torsion_spring, "bushing": _bushing, "bearing": _bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
     "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged}

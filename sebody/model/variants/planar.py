@@ -83,7 +83,7 @@ def planar(model: Mechanism) -> Variant:
 def _of_bushings(model: Mechanism) -> str:
     """What is not the same in the plane."""
     names = [one.name for one in model.loads
-             if one.kind == "bushing" and np.any(one.constants["kt"])]
+             if one.kind in ("bushing", "bearing") and np.any(one.constants["kt"])]
     return f"; moments of {', '.join(names)} follow angles, in space their sines" if names else ""
 
 

@@ -118,12 +118,27 @@ def power(case: Case) -> float:
 
 
 def force_at_rest(case: Case) -> float:
-    """Force of springs at rest against the gradient of their energy."""
-    case = case._replace(v=0 * case.v)
+    """Force of springs at rest against the gradient of their energy.
+
+    Coefficients that couple two axes are taken alike in both directions: others have no energy.
+    """
+    case = case._replace(v=0 * case.v, constants=_symmetric(case))
     exact = _potential_force(case)
     if not np.abs(exact).max() > 1e-12:     # a load: none
         return 0.0
     return difference(evaluate(case, RESIDUAL)[0], exact)
+
+
+def _symmetric(case: Case) -> NDArray:
+    """Constants in which `k12` is `k21`, and so on."""
+    constants = case.constants.copy()
+    at = Row(case.module.__name__, case.module.CONSTANTS).slices({})
+    for name, part in at.items():
+        key, first, second = name[:-2], *name[-2:].rjust(2)
+        other = {"ut": "tu", "tu": "ut"}.get(key[1:], key[1:])
+        if (opposite := f"{key[:1]}{other}{second}{first}") in at:
+            constants[part] = constants[at[max(name, opposite)]]
+    return constants
 
 
 def hamilton(case: Case) -> float:

@@ -1,0 +1,1 @@
+"""Axes of analyses about a rotation: what turns, what stands, and in which axes both are told."""
