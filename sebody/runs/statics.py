@@ -83,6 +83,7 @@ def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
     SimulationError
         As `equilibrium`.
     """
+    steps = inputs.integer(steps, "steps", least=1)
     _refuse_states(model)
     return _equilibrium(_at_rest(model, 0.0), spin, steps, TOLERANCE, "leave")
 

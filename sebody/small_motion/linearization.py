@@ -342,7 +342,7 @@ def modes_in(run: Simulation | Result, axes: View) -> Modes:
     M, C, K, free = linearized(run, axes)[:4]
     own = _with_mass(M, K, C)
     roots = eigenvalues(own.mass, own.damping, own.stiffness)
-    if axes.spin.parts is not None:
+    if axes.frame == "standing":
         roots = _with_double_zeros(roots)
     # on integrals of controllers' states nothing depends: each has the value 0, which is no mode;
     # rounding may make a conjugate pair of two of these, of which one value is here
