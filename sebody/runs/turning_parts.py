@@ -187,8 +187,8 @@ class Mechanics:
                 parts = self._about_gear(about, node)
                 if not turning or not parts:
                     continue
-                driver, _ = self._force(one, [n.rotation for n in turning], line)
-                driven, _ = self._force(one, [node.rotation], about)
+                driver, _ = self._force(one, [n.rotation for n in turning if n.rotation], line)
+                driven, _ = self._force(one, [node.rotation] if node.rotation else [], about)
                 if size := float(driven @ driven):
                     ratio = -float(driver @ driven) / size
                     found |= {t: Turning(about.point, ratio) for t in parts}
