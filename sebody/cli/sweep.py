@@ -45,8 +45,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
     parser.add_argument("--output", type=Path, metavar="SWEEP",
-                        help="write SWEEP.npz, with pandas SWEEP.csv or .parquet, with matplotlib "
-                             "SWEEP.png; an interrupted sweep continues from SWEEP.npz")
+                        help="write SWEEP.npz, SWEEP.csv or, with pandas, .parquet, and with "
+                             "matplotlib SWEEP.png; an interrupted sweep continues from SWEEP.npz")
     parser.add_argument("--threads", type=whole, metavar="N",
                         help="number of threads (default: one per processor)")
     parser.add_argument("--workers", type=whole, metavar="N",
@@ -148,13 +148,7 @@ def _time(text: str, time: str) -> float:
 
 def _written(table: "Table", stem: Path) -> list[str]:
     """Write what the installed extras can; lines that name the files."""
-    lines = [f"table: {_beside(stem, '.npz')}"]
-    try:
-        frame = table.to_pandas()
-    except InputError:
-        print('no CSV or Parquet table: pip install "sebody[tables]"', file=sys.stderr)
-    else:
-        lines.append(f"table: {_frame(frame, stem)}")
+    lines = [f"table: {path}" for path in (_beside(stem, ".npz"), _flat(table, stem))]
     try:
         from sebody.explore.sweep.picture import draw
 
@@ -165,16 +159,16 @@ def _written(table: "Table", stem: Path) -> list[str]:
     return lines
 
 
-def _frame(frame, stem: Path) -> Path:
+def _flat(table: "Table", stem: Path) -> Path:
     """A Parquet file where pandas can write one, else CSV."""
     from sebody.basics.files import replacing
 
     try:
-        path = _beside(stem, ".parquet")
+        frame, path = table.to_pandas(), _beside(stem, ".parquet")
         with replacing(path, "table") as file:
             frame.to_parquet(file)
-    except ImportError:
+    except (ImportError, InputError):       # it is not installed, or lacks what writes Parquet
         path = _beside(stem, ".csv")
         with replacing(path, "table") as file:
-            file.write(frame.to_csv(index=False).encode())
+            file.write(table.to_csv().encode())
     return path

@@ -48,7 +48,7 @@ def test_a_table_of_a_sweep_is_listed(tmp_path, capsys):
     assert main(["list", str(tmp_path / "table.npz")]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[:2] == ["modes: 2 values, 1 to 3", "2 of 2 runs done, 0 failed"]
-    assert lines[-1].split()[0] == "tip"
+    assert lines[2].split() == ["modes", "tip"] and lines[-1].split()[0] == "3"
 
 
 @pytest.mark.parametrize("name, message", [

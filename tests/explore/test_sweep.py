@@ -16,6 +16,7 @@ from sebody.explore import sweep as room
 from sebody.explore.sweep import Distribution, sobol, sweep
 from sebody.explore.sweep import executors as places
 from sebody.explore.sweep.design import design
+from sebody.explore.sweep.picture import draw
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import distribution_of, values_of
 
@@ -284,3 +285,39 @@ def test_workers_with_another_version_are_refused(monkeypatch):
                                   dashboard_address=None, protocol="tcp") as here:
         with pytest.raises(InputError, match="has sebody 0.0.8, this is 0.0.9: install one"):
             sweep(build, OUTPUTS, {"length": [1.0]}, cluster=here.scheduler_address)
+
+
+@pytest.mark.parametrize("varied, axes", [
+    ({"length": [1.0, 1.5, 2.0]}, ["length"]),
+    ({"length": [1.0, 1.5], "mass": [1, 2, 3], "step": [0.01]}, ["length", "mass"]),
+    ({"length": [1.0, 1.5], "mass": [1.0, 2.0], "t_end": [0.1, 0.2]}, [])])
+def test_answers_of_one_or_two_parameters_are_listed(varied, axes, tmp_path):
+    """A line for each run with its values; of other tables quantiles. The picture is drawn."""
+    table = sweep(build, OUTPUTS, varied)
+    assert table.axes() == axes
+    head, *lines = table.summary().splitlines()[1:]
+    if axes:
+        assert head.split() == [*axes, "tip[0]", "tip[1]", "speed"] and len(lines) == table.runs
+        for k, line in enumerate(lines):
+            numbers = [float(word) for word in line.split()]
+            assert numbers == pytest.approx([*(float(table[name][k]) for name in axes),
+                                             *table["tip"][k], table["speed"][k]], rel=1e-5)
+    else:
+        assert head.split() == ["output", "5", "%", "median", "95", "%"]
+    draw(table, tmp_path / "sweep.png")
+    assert (tmp_path / "sweep.png").stat().st_size > 5000
+
+
+def test_a_table_as_csv_is_what_pandas_reads(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    table = sweep(build, OUTPUTS, {"length": [1.0, 1.5], "mass": [1.0, 2.0]})
+    table.failures[1] = 'stopped at t = 0.1: "no", it said'
+    table.outputs["tip"][1] = np.nan
+    (tmp_path / "table.csv").write_text(table.to_csv())
+    read, made = pandas.read_csv(tmp_path / "table.csv"), table.to_pandas()
+    assert list(read.columns) == list(made.columns) and not table.good.all()
+    for name in read.columns:
+        if name == "failure":
+            assert read[name].fillna("").tolist() == made[name].tolist()
+        else:
+            assert np.array_equal(read[name], made[name].astype(read[name].dtype), equal_nan=True)

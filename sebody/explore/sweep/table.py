@@ -1,8 +1,10 @@
 """The table of a sweep: parameters and outputs of every run, in memory and in files."""
 
+import csv
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +15,7 @@ from sebody.basics.errors import InputError
 from sebody.basics.files import members, replacing
 from sebody.basics.files.array_files import json_of, opened
 from sebody.basics.files.checksums import changed, checksums
+from sebody.basics.tabular import text
 from sebody.explore.sweep.batches import Answer
 
 if TYPE_CHECKING:
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
 VERSION = 1
 ROUNDING = 1e-13         # of the largest component
 QUANTILES = (0.05, 0.5, 0.95)
+MOST_LISTED = 400        # runs of one or two parameters: beyond, quantiles say more
 
 
 @dataclass
@@ -106,6 +110,28 @@ class Table:
                         {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
         return {**by_name, "done": self.done, "failure": self.failures}
 
+    def axes(self) -> list[str]:
+        """The one or two parameters that vary, where every combination of their values is one run.
+
+        Of random samples and of more parameters none: quantiles say more of these.
+        """
+        counts = {name: count for name, values in self.parameters.items()
+                  if (count := len(set(values.tolist()))) > 1}
+        whole = len(counts) in (1, 2) and np.prod(list(counts.values())) == self.runs
+        return list(counts) if whole and self.runs <= MOST_LISTED else []
+
+    def answers(self) -> str:
+        """Values of `axes` and of the outputs, a line for each run."""
+        columns, axes = self.columns(), self.axes()
+        outputs = [name for name in columns if name.partition("[")[0] in self.outputs]
+        rows = [[*(_number(columns[name][k]) for name in axes),
+                 *(_number(self._rounded(name, columns[name][k])) for name in outputs)]
+                for k in range(self.runs)]
+        return text("", [*axes, *outputs], rows).lstrip("\n")
+
+    def _rounded(self, column: str, value: float) -> float:
+        return value if not abs(value) <= self.rounding(column) else 0.0
+
     def quantiles(self) -> dict[str, NDArray]:
         """5 %, median and 95 % of every column of the outputs, over the good runs."""
         outputs = [name for name in self.columns() if name.partition("[")[0] in self.outputs]
@@ -120,19 +146,29 @@ class Table:
         return ROUNDING * float(np.max(values, initial=0.0))
 
     def summary(self) -> str:
-        """Numbers of runs, and quantiles of the outputs, as text."""
+        """Numbers of runs, and the outputs as text: of each run, see `axes`, or their quantiles."""
         failed = self.done & ~self.good
         lines = [f"{int(self.done.sum())} of {self.runs} runs done, {int(failed.sum())} failed"]
         reasons = sorted(set(self.failures[failed]), key=list(self.failures[failed]).count)
         lines += [f"  {list(self.failures).count(r)} x {r}" for r in reasons[-3:][::-1]]
         quantiles = self.quantiles()
-        if quantiles:
+        if quantiles and self.axes():
+            lines.append(self.answers())
+        elif quantiles:
             width = max(map(len, quantiles))
             lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
             lines += [f"{name:{width}} " + " ".join(
-                f"{q if abs(q) > self.rounding(name) else 0.0:12.6g}" for q in values)
+                f"{self._rounded(name, q):12.6g}" for q in values)
                       for name, values in quantiles.items()]
         return "\n".join(lines)
+
+    def to_csv(self) -> str:
+        """The columns as CSV, a line for each run."""
+        columns, file = self.columns(), StringIO()
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
+        return file.getvalue()
 
     def to_pandas(self) -> "pandas.DataFrame":
         """The columns as a data frame.
@@ -191,6 +227,10 @@ class Table:
                             if name.startswith(kind + "/")} for kind in ("parameter", "output")}
             return cls(str(arrays["design"]), parts["parameter"], parts["output"], arrays["done"],
                        arrays["failure"].astype(object))
+
+
+def _number(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
 
 
 def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]:
