@@ -1,4 +1,4 @@
-"""``sebody check``: consistency of the generated kernels."""
+"""``sebody check``: consistency of the generated kernels, and of quantities."""
 
 import argparse
 
@@ -6,10 +6,10 @@ import argparse
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
     """The parser of the command."""
     parser = commands.add_parser("check", help="check kernels: forces against energies, tangents "
-                                               "against forces")
+                                               "against forces; and quantities")
     parser.add_argument("kernels", nargs="*", metavar="KERNEL",
                         help="show all criteria of these kernels, or of those of a joint such as "
-                             "revolute (default: summary of all kernels)")
+                             "revolute, or of quantities (default: summary of all)")
     return parser
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from sebody.assembly.controller_rows import law_counts
+from sebody.assembly.controller_rows import law_constants, law_counts
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
@@ -172,7 +172,8 @@ def _place_of_controller(owner: str, which: int, model: Mechanism, numbering: Nu
     law = next((load for load in model.loads
                 if load.law is not None and load.law.controller == owner), None)
     if law is not None:
-        slices = Row("constants", element_kernel(law.kind).CONSTANTS).slices(law_counts(model, law))
+        counts = law_counts(law_constants(model, numbering, law))
+        slices = Row("constants", element_kernel(law.kind).CONSTANTS).slices(counts)
         return system.constants, numbering.constants_at[law] + slices["parameters"].start + which
     names = [one.name for one in sampled(model)]
     before = names[:names.index(owner)]

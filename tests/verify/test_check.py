@@ -18,10 +18,19 @@ from sebody.contract.layout import (
     TRANSPOSED,
     VELOCITY,
 )
-from sebody.kernels import packed_groups
+from sebody.kernels import packed_groups, tapes
 from sebody.kernels.loader import load
+from sebody.quantities import algebra, motion
+from sebody.quantities.expressions import Sum
 from sebody.verify import check
-from sebody.verify.check import definitions, elements, products, states, superelements
+from sebody.verify.check import (
+    definitions,
+    elements,
+    products,
+    quantities,
+    states,
+    superelements,
+)
 
 
 @pytest.mark.parametrize("name", kernel_files())
@@ -261,8 +270,33 @@ def test_planar_kernel_equals_the_spatial_one_on_planar_states():
         assert states.difference(matrices[0], matrices[1][np.ix_(keep, keep)]) <= 1e-12
 
 
+def test_quantities_are_those_of_their_histories(monkeypatch):
+    """With rates and weights of their tapes; what is wrong is noticed, by the name of the row."""
+    rows = check.check_kernels(["quantities"])
+    failed = [row for row in rows if not row.passed]
+    assert not failed, check.table(failed)
+    kinds = {row.kernel for row in rows}
+    assert {"quantity joint: angle", "quantity node of a body: moment in a plane",
+            "quantity contact, stop or friction: normal_force", "quantity energy.kinetic",
+            "quantity controller: states"} <= kinds and len(kinds) > 70
+    assert check.verdict(rows) == f"{len(rows)} criteria of {len(kinds)} quantities hold"
+    monkeypatch.setattr(motion, "dot", lambda a, b: 1.001 * algebra.dot(a, b)
+                        if isinstance(a[0], Sum) else algebra.dot(a, b))
+    bad = {(row.kernel, row.criterion) for row in check.check_kernels(["quantities"])
+           if not row.passed}
+    assert ("quantity joint: rate", quantities.VALUE) in bad
+    assert not {criterion for _, criterion in bad} - {quantities.VALUE}
+    monkeypatch.undo()
+
+    def wrong(*tape):       # rates of the computed numbers are not written
+        tapes.play_along(*tape[:-1], tape[-1].copy())
+    monkeypatch.setattr(quantities, "play_along", wrong)
+    bad = {row.criterion for row in check.check_kernels(["quantities"]) if not row.passed}
+    assert bad == {quantities.ALONG, quantities.TRANSPOSED}
+
+
 def test_unknown_kernel():
-    with pytest.raises(InputError, match="kernel 'nothing' is unknown: there are element_"):
+    with pytest.raises(InputError, match="kernel 'nothing' is unknown: there are revolute, "):
         check.check_kernels(["nothing"])
 
 

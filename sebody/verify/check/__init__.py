@@ -1,4 +1,5 @@
-"""Consistency of the generated kernels: forces against energies, tangents against differences.
+"""Consistency of generated kernels and of quantities: forces against energies, tangents, rates of
+tapes against differences.
 
 Every criterion compares a kernel with derivatives taken numerically, in seeded generic states:
 rotations of the order of one radian, elastic rotations to 0.3, moving and accelerating.
@@ -18,6 +19,7 @@ from sebody.verify.check.law_products import check_law_products
 from sebody.verify.check.laws import follows
 from sebody.verify.check.motions import check_motion
 from sebody.verify.check.products import check_products
+from sebody.verify.check.quantities import QUANTITIES, check_quantities
 from sebody.verify.check.report import summary, table, verdict
 from sebody.verify.check.states import CheckRow
 from sebody.verify.check.superelements import check_superelement
@@ -26,7 +28,7 @@ __all__ = ["CheckRow", "check_kernels", "summary", "table", "verdict"]
 
 
 def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
-    """Check kernels by name, all of them by default; see `chosen.chosen_kernels`.
+    """Check kernels by name, and ``quantities``, all by default; see `chosen.chosen_kernels`.
 
     Raises
     ------
@@ -34,7 +36,9 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
         An unknown name.
     """
     known, rows = [*kernel_files(), *product_files()], []
-    chosen = chosen_kernels(names, known) if names else known
+    asked = None if names is None else list(names)
+    of_kernels = [name for name in asked or () if name != QUANTITIES]
+    chosen = chosen_kernels(of_kernels, known) if asked else known
     of_products = [name.removeprefix(PRODUCTS) for name in chosen]
     compile_missing(dict.fromkeys((*chosen, *of_products)))
     for name in chosen:
@@ -46,6 +50,8 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
                  check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
+    if not asked or QUANTITIES in asked:
+        rows += check_quantities()
     return rows
 
 

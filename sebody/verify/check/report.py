@@ -2,6 +2,7 @@
 
 import math
 
+from sebody.verify.check.quantities import PREFIX
 from sebody.verify.check.states import CheckRow
 
 
@@ -35,7 +36,11 @@ def verdict(rows: list[CheckRow]) -> str:
     failed, kernels = [row for row in judged if not row.passed], {row.kernel for row in rows}
     if failed:
         return f"{len(failed)} of {len(judged)} criteria fail"
-    return f"{len(judged)} criteria of {len(kernels)} kernel{'s' * (len(kernels) > 1)} hold"
+    quantities = {name for name in kernels if name.startswith(PREFIX)}
+    parts = [f"{size} {what if size == 1 else many}" for size, what, many in (
+        (len(kernels - quantities), "kernel", "kernels"),
+        (len(quantities), "quantity", "quantities")) if size]
+    return f"{len(judged)} criteria of {' and '.join(parts)} hold"
 
 
 def _place(row: CheckRow) -> str:
