@@ -41,6 +41,7 @@ if TYPE_CHECKING:
         modes,
         vibrations,
     )
+    from sebody.small_motion.participation import EffectiveMasses, effective_masses
     from sebody.small_motion.state_space import StateSpace, state_space
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "Contribution",
     "Contributions",
     "Design",
+    "EffectiveMasses",
     "EnergyGain",
     "Ensemble",
     "FrequencyResponse",
@@ -70,6 +72,7 @@ __all__ = [
     "calibrate",
     "campbell",
     "contributions",
+    "effective_masses",
     "energy_gain",
     "equilibrium",
     "final",

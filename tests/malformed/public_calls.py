@@ -131,6 +131,7 @@ ANALYSIS = {
         "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
     "modes": Call(an.modes, lambda: {
         "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
+    "effective_masses": Call(an.effective_masses, lambda: {"run": hanging(), "count": 1}),
     "vibrations": Call(an.vibrations, lambda: {"run": hanging(), "count": 1}),
     "energy_gain": Call(an.energy_gain, lambda: {"model": mechanism(), "until": 0.1}),
     "resume": Call(an.resume, lambda: {"model": mechanism(), "path": "none.npz"}),
