@@ -36,7 +36,8 @@ NUDGE = 1e-3                # of an unstable state along its softest motion, in 
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
 SEARCH = 2500               # iterations of a motion to rest: falling arches of forty rods take 1500
-SEARCHES = 4000             # and of all motions of a structure that lead to no rest
+SEARCHES = 4000             # of all motions of a structure that lead to no rest; then
+FEW = 200                   # of each further one: a smaller load step may rest soon
 FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
 SLOW, SOFTEST = 0.1, 1e-9   # steps that shrink by less need softer springs, down to this rate
 SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
@@ -157,7 +158,8 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
         return False
     rate, faster, lowest = (LAST if near else FIRST) * unit, FASTEST, LAST * unit
     last, before = np.inf, work.left
-    while work.left > max(before - SEARCH, 0):
+    least = before - FEW if before <= 0 else max(before - SEARCH, 0)
+    while work.left > least:
         kept, ending = run.state.now.copy(), rate <= lowest
         springs = _springs(run, rate)
         found = balance(run, tolerance, spin, springs, work=work)
