@@ -1,12 +1,15 @@
 """Rotors in bearings that stand: what turns, and in which axes the analyses are told."""
 
+import warnings
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from rotor_models import AXIS, RPM, TURNED, about_shaft, disc, turbine, two_discs
 
-from sebody import InputError, Model
+from sebody import InputError, Model, simulate
 from sebody.analysis import campbell, equilibrium, frequency_response, modes, state_space
+from sebody.basics.errors import LimitWarning
 from sebody.fem import Section, circle
 
 
@@ -351,3 +354,27 @@ def _bushing(**given):
     model = Model()
     model.node("a", (0, 0, 0))
     model.bushing("a", **given)
+
+
+def test_a_heavier_blade_against_a_run():
+    """Frequencies from the ground, and their neighbours two revolutions away, in a spectrum."""
+    speed, step, count = 6.0, 2e-3, 28000
+    found = at_speed(turbine(heavier=2.0), speed, hub="hub")
+    assert found.frame == "floquet"
+    model = turbine(heavier=2.0)
+    model.rigid_velocity((0, 0, 0), speed * AXIS)
+    model.force("hub", TURNED @ (0.0, 1.0, 0.3), [(0, 0), (0.02, 3e4), (0.04, 0)], name="push")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LimitWarning)   # of the blow, which ends between steps
+        result = simulate(model, step, 60.0)
+    swing = (result["hub.position"] @ TURNED[:, 1])[-count:]
+    spectrum = np.abs(np.fft.rfft((swing - swing.mean()) * np.hanning(count), 8 * count))
+    omega = 2 * np.pi * np.fft.rfftfreq(8 * count, step)
+    width = 2 * np.pi / (count * step)      # of a bin
+    low = found.omega[(found.omega > 7.0) & (found.omega < 60.0)]
+    first, second, last = low[0], low[1], low[-1]
+    for expected in (first, second, last, first + 2 * speed, second - 2 * speed):
+        near = np.abs(omega - expected) < 4 * width
+        near &= np.abs(omega - speed) > 4 * width   # of unbalance
+        peak = omega[near][np.argmax(spectrum[near])]
+        assert abs(peak - expected) < width
