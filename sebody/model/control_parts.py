@@ -1,5 +1,6 @@
 """What closes a loop: sensors, and controllers with what they are given and what they set."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from numpy.typing import NDArray
@@ -42,6 +43,18 @@ class Controller:
     delay: float                    # of its outputs, in samples
     states: NDArray                 # at the start
     parameters: NDArray
+    _refuse: Callable[[NDArray], None] | None = None    # of a ready law
+
+    def check_parameters(self) -> None:
+        """Refuse parameters that the builder of a ready law refuses.
+
+        Raises
+        ------
+        InputError
+            The message names what is wrong.
+        """
+        if self._refuse is not None:
+            self._refuse(self.parameters)
 
     @property
     def whole_delay(self) -> int:

@@ -100,7 +100,8 @@ def controller(model: Mechanism, name: str, law: Law | Callable[..., None],
     _check_written(model, name, where, outs)
     compiled = compiled_controller(function, name, (len(ins), len(states), len(outs),
                                                     len(parameters)))
-    made = Controller(name, compiled, ins, outs, period, delay, states, parameters)
+    made = Controller(name, compiled, ins, outs, period, delay, states, parameters,
+                      law.refuse if isinstance(law, Law) else None)
     model.controllers[name] = made
     try:
         order(model)
@@ -134,7 +135,8 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
     sizes = len(ins), len(states), len(outs), len(parameters)
     compiled = compiled_law(function, name, sizes)
     by = None if derivatives is None else compiled_derivatives(derivatives, name, sizes)
-    made = Controller(name, compiled, ins, outs, 0.0, 0, states, parameters)
+    made = Controller(name, compiled, ins, outs, 0.0, 0, states, parameters,
+                      law.refuse if isinstance(law, Law) else None)
     model.loads.append(law_element(model, made, by, corners))
     model.controllers[name] = made
     return made

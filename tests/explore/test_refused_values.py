@@ -8,6 +8,7 @@ import pytest
 from sebody import InputError, Model, plane
 from sebody.analysis import Ensemble, ValueAndGradient, final, gradients
 from sebody.cli.entry import main
+from sebody.control import lookup, pid
 from sebody.explore.ensembles import ensemble
 
 H, END = 0.005, 0.1
@@ -104,6 +105,22 @@ def test_in_a_sweep_others_go_on(tmp_path, capsys, monkeypatch):
     said = capsys.readouterr().out
     assert "3 of 3 runs done, 1 failed" in said
     assert "1 x 'buffer': it starts at 0, beyond the limits -0.4 and -0.1" in said
+
+
+@pytest.mark.parametrize("law, place, wrong, message", [
+    (pid(2.0, kd=0.1), 4, 0.0, "pid: filter is 0"),
+    (lookup([-1.0, 0.0, 1.0], [1.0, 0.0, -1.0]), 1, 2.0, "lookup: points .* ascend")])
+@pytest.mark.parametrize("period", [None, 0.01])
+def test_parameters_of_laws_are_those_that_their_builders_take(law, place, wrong, message, period):
+    model = arm()
+    model.actuator("motor", joint="pin")
+    model.controller("loop", law, ["pin.angle"], ["motor"], period)
+    numbers = model.controllers["loop"].parameters
+    finite = numbers[np.isfinite(numbers)]
+    values = np.tile(finite, (3, 1))
+    values[1, place - (period is None and message[0] == "p")] = wrong
+    found = Ensemble(model, H).run({"loop.parameters": values}, END, OUTPUTS)
+    assert set(found.failures) == {1} and re.search(message, found.failures[1])
 
 
 def test_a_fault_of_a_function_is_the_reason_of_the_runs_that_meet_it():

@@ -31,6 +31,7 @@ from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import changes, load_changes
 from sebody.explore.ensembles.changes import Handle
+from sebody.model.control_parts import Controller
 from sebody.model.element_numbers import refuse_numbers
 from sebody.model.model import Model
 from sebody.model.parts import Element
@@ -124,10 +125,13 @@ def refuse_values(model: Model, names: Iterable[str]) -> None:
     ------
     InputError
         As the builders of contacts, stops, gears and friction: of their own numbers, and where
-        what they touch begins.
+        what they touch begins; and as those of ready laws.
     """
+    names = list(names)
     for one in checked_parts(model, names):
         refuse_numbers(model, one)
+    for controller in _checked_laws(model, names):
+        controller.check_parameters()
 
 
 def checked_parts(model: Model, names: Iterable[str]) -> list[Element]:
@@ -140,11 +144,18 @@ def checked_parts(model: Model, names: Iterable[str]) -> list[Element]:
             if owner in parts]
 
 
+def _checked_laws(model: Model, names: Iterable[str]) -> list[Controller]:
+    """Controllers whose parameters names change."""
+    owners = [name.rpartition(".") for name in names]
+    return [model.controllers[owner] for owner, _, quantity in owners
+            if quantity == "parameters" and owner in model.controllers]
+
+
 def refused(model: Model, found: Mapping[str, Handle], values: Mapping[str, Any], runs: int
             ) -> dict[int, str]:
     """Runs whose values a builder refuses, and why; the model is changed for moments."""
     reasons: dict[int, str] = {}
-    if not checked_parts(model, found):
+    if not (checked_parts(model, found) or _checked_laws(model, found)):
         return reasons
     for run in range(runs):
         try:

@@ -49,6 +49,8 @@ class Law:
         Its parameters (m,) for a period.
     flow : Flow, optional
         Its continuous form; without one it is sampled.
+    refuse : callable, optional
+        Raises InputError of parameters (m,) that the builder of the law refuses.
     """
 
     title: str
@@ -58,6 +60,7 @@ class Law:
     states: NDArray
     packed: Callable[[float], NDArray]
     flow: Flow | None = None
+    refuse: Callable[[NDArray], None] | None = None
 
     def __repr__(self) -> str:
         return f"<Law: {self.title}>"

@@ -48,7 +48,12 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
                inputs.number(reference, "pid: reference"), *_limits(limit, "pid: limit")]
     return Law("pid", _pid, (1, 2), 1, np.zeros(4),
                lambda period: np.array([period, *numbers]),
-               Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives))
+               Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives), _check_pid)
+
+
+def _check_pid(parameters):
+    """Refuse a filter that is not positive; a period comes first where there is one."""
+    inputs.number(parameters[-4], "pid: filter", above=0.0)
 
 
 def _pid(t, y, x, u, parameters):
@@ -150,10 +155,17 @@ def lookup(points: ArrayLike, values: ArrayLike) -> Law:
     """
     points = inputs.vector(points, "lookup: points")
     values = inputs.vector(values, "lookup: values", len(points))
+    packed = constant(points, values)
+    _check_lookup(packed(0.0))
+    return Law("a lookup", _lookup, (1,), 1, NONE, packed, _without_states(_lookup, packed(0.0)),
+               _check_lookup)
+
+
+def _check_lookup(parameters):
+    """Refuse points that do not ascend."""
+    points = parameters[:parameters.size // 2]
     if len(points) < 2 or not (np.diff(points) > 0).all():
         raise inputs.refusal("lookup: points", points, "give at least two that ascend")
-    packed = constant(points, values)
-    return Law("a lookup", _lookup, (1,), 1, NONE, packed, _without_states(_lookup, packed(0.0)))
 
 
 def _lookup(t, y, x, u, parameters):
