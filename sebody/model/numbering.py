@@ -86,4 +86,4 @@ def stretch(numbering: Numbering, dof_block: DofBlock) -> slice:
 def record_counts(numbering: Numbering) -> dict[str, int]:
     """The counts of a model that sizes in `layout.RECORD` and `layout.ENERGIES` refer to."""
     return {"ports": len(numbering.time_functions), "coordinates": numbering.total,
-            "rotations": len(numbering.rotations), "stored": numbering.memory_map.size}
+            "rotations": len(numbering.rotations), "stored": numbering.memory.size}

@@ -51,7 +51,7 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
                Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives), _check_pid)
 
 
-def _check_pid(parameters):
+def _check_pid(parameters: NDArray) -> None:
     """Refuse a filter that is not positive; a period comes first where there is one."""
     inputs.number(parameters[-4], "pid: filter", above=0.0)
 
@@ -161,7 +161,7 @@ def lookup(points: ArrayLike, values: ArrayLike) -> Law:
                _check_lookup)
 
 
-def _check_lookup(parameters):
+def _check_lookup(parameters: NDArray) -> None:
     """Refuse points that do not ascend."""
     points = parameters[:parameters.size // 2]
     if len(points) < 2 or not (np.diff(points) > 0).all():
