@@ -16,7 +16,8 @@ def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
          kinds: tuple[str, ...] = ("position", "rotation")) -> tuple[Node, Node]:
     """Both nodes of a joint; the ground is a fixed node at the place of the first."""
     a = known(model, node)
-    b = ground(model, a) if on_ground(model, to) else known(model, to)
+    other = None if on_ground(model, to) else to
+    b = ground(model, a) if other is None else known(model, other)
     if a is b:
         raise InputError(f"{what}: node {a.name!r} is joined to itself: give two nodes")
     for kind in kinds:
