@@ -316,7 +316,7 @@ CONTROL = {
         "limit": [*are(f"{MOTOR}: limit", 0.0, -1.0, NAN, (2.0, 1.0), (1.0, 2.0, 3.0))]}),
     "continuous controller": Right(Model.controller, {"name": "push", "law": _flow, "inputs": [
             "a.position.x"], "outputs": ["signal"]}, {
-        "inputs": have(PUSH, ["a.acceleration.x"], ["a.position"], ["nothing.position.x"]),
+        "inputs": have(f"inputs of {PUSH}", None, 3),       # names are looked up where a run starts
         "delay": have("write the delay as states", 2),
         "derivatives": have(f"derivatives of {PUSH}", 3, _flow),
         "corners": have("", [NAN], "ab"), "law": have(PUSH, None, 3, "sin")}),
