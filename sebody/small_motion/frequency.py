@@ -24,7 +24,7 @@ from sebody.pictures.frequency_pictures import save_response
 from sebody.results.naming import component_names
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
-from sebody.small_motion.linearization import small_motion
+from sebody.small_motion.linearization import small_motion, warn_of_spin
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.small_motion.rotation.azimuths import steady
 from sebody.small_motion.rotation.views import view
@@ -127,6 +127,8 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
         inputs.name(name, "name of a quantity")
     refuse_unmoved(names, "harmonic response")
     axes = view(run, spin, frame, hub)
+    if spin is None:
+        warn_of_spin(run, np.abs(omega), "a harmonic response")
     with steady(run, axes.spin):
         matrices = small_motion(run, axes)
         forces, push = by_amplitude(run, _load(run, load))

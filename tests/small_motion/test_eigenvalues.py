@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sebody import Model, Simulation
-from sebody.analysis import campbell, equilibrium, modes
+from sebody.analysis import campbell, equilibrium, frequency_response, modes
 from sebody.basics.errors import LimitWarning
 from sebody.fem import circle
 from sebody.small_motion.eigenvalues import EPS, eigenvalues
@@ -133,4 +133,12 @@ def test_modes_of_what_spins_want_the_spin(planar, recwarn):
     modes(Simulation(disc(planar), 1e-3), 50.0 if planar else 50.0 * AXIS)
     modes(Simulation(disc(planar, 0.0), 1e-3))
     modes(Simulation(disc(planar, 1e-4), 1e-3))
+    assert not [one for one in recwarn if "spin=" in str(one.message)]
+    model = disc(planar)
+    model.force("d", (0.6, 0.8) if planar else AXIS, 1.0, name="push")
+    with pytest.warns(LimitWarning, match="a harmonic response of a state that rotates at up to"):
+        frequency_response(Simulation(model, 1e-3), "push", "d.position", [3.0])
+    recwarn.clear()
+    frequency_response(Simulation(model, 1e-3), "push", "d.position", [3.0],
+                       50.0 if planar else 50.0 * AXIS)
     assert not [one for one in recwarn if "spin=" in str(one.message)]
