@@ -204,9 +204,24 @@ def test_included_data(decks):
     path.write_text("*NODE\n*INCLUDE, INPUT=nodes.txt\n" + "\n".join(lines[9:])
                     + "\n*ELEMENT" + rest)
     assert read_deck(path).nodes == read_deck(decks / "loose.inp").nodes
-    (folder / "nodes.txt").write_text("1, 2, x, 3\n")
-    with pytest.raises(InputError, match=r"nodes\.txt, line 1: 'x' is not a number"):
+    (folder / "nodes.txt").write_text("1, 2, secret, 3\n")     # of it no text is shown
+    with pytest.raises(InputError, match=r"nodes\.txt, line 1: a word is not a number") as caught:
         read_deck(path)
+    assert "secret" not in str(caught.value)
+
+
+def test_files_that_include_others(decks):
+    """Twelve deep, with the mark of their byte order before the first line; a circle is refused."""
+    folder = decks.parent / "deep"
+    folder.mkdir()
+    text = (decks / "loose.inp").read_text()
+    for k in range(12):
+        (folder / f"part{k}.inp").write_bytes(b"\xef\xbb\xbf" + (
+            f"*INCLUDE, INPUT=part{k + 1}.inp\n".encode() if k < 11 else text.encode()))
+    assert read_deck(folder / "part0.inp").nodes == read_deck(decks / "loose.inp").nodes
+    (folder / "part11.inp").write_text("*INCLUDE, INPUT=part4.inp\n")
+    with pytest.raises(InputError, match=r"part4\.inp is included by itself: remove the circular"):
+        read_deck(folder / "part0.inp")
 
 
 def test_surfaces_are_node_sets(decks):

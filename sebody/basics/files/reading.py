@@ -6,6 +6,7 @@ files themselves, are called by `called`.
 
 import json
 import os
+from codecs import BOM_UTF8
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from stat import S_ISREG
@@ -90,7 +91,8 @@ def text(path: str | os.PathLike, what: str, remedy: str) -> str:
     InputError
         See `content`.
     """
-    decoded = content(path, what, remedy, times=LINES).decode("latin-1")
+    read = content(path, what, remedy, times=LINES)
+    decoded = read.removeprefix(BOM_UTF8).decode("latin-1")
     return decoded.replace("\r\n", "\n").replace("\r", "\n")
 
 

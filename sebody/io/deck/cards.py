@@ -5,6 +5,7 @@
     1.0
 """
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +13,8 @@ from typing import NamedTuple
 from sebody.basics.errors import InputError
 from sebody.io.text import fault, read_text
 
-_DEPTH = 10     # of files that include others; more is a circle
+_DEEPEST = 100  # of files that include others
+_QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")     # a word of a line, as messages show it
 _REMEDY = "give the deck that the matrices were computed from"
 
 
@@ -22,10 +24,15 @@ class Row(NamedTuple):
     path: Path
     number: int
     words: list[str]
+    included: bool = False      # the line is of a file that another one includes
 
     def fault(self, what: str, remedy: str) -> InputError:
-        """The exception for a line that cannot be used."""
-        return fault(self.path, self.number, what, remedy)
+        """The exception for a line that cannot be used.
+
+        Of an included file, which may be any file of the machine, no text is shown.
+        """
+        shown = _QUOTED.sub("a word", what) if self.included else what
+        return fault(self.path, self.number, shown, remedy)
 
     def label(self, word: str) -> int:
         """A word as the label of a node or element."""
@@ -103,7 +110,7 @@ def read_cards(path: Path) -> Iterator[Card]:
 def _statements(path: Path) -> Iterator[tuple[Row, str]]:
     """Data lines and whole keyword lines, which continue after a comma at their end."""
     begun: tuple[Row, str] | None = None
-    for row, text in _lines(path, path.parent, 0):
+    for row, text in _lines(path, path.parent, ()):
         if begun:
             row, text = begun[0], begun[1] + text.strip()
             begun = None
@@ -115,14 +122,24 @@ def _statements(path: Path) -> Iterator[tuple[Row, str]]:
         yield begun
 
 
-def _lines(path: Path, home: Path, depth: int) -> Iterator[tuple[Row, str]]:
-    """Lines that are no comments, those of included files in the place of their *INCLUDE."""
-    if depth > _DEPTH:
+def _lines(path: Path, home: Path, includers: tuple[Path, ...]) -> Iterator[tuple[Row, str]]:
+    """Lines that are no comments, those of included files in the place of their *INCLUDE.
+
+    Parameters
+    ----------
+    includers : tuple of Path
+        The files, from the deck on, that include this one.
+    """
+    own = path.resolve()
+    if own in includers:
         raise InputError(f"deck {path} is included by itself: remove the circular *INCLUDE")
+    if len(includers) > _DEEPEST:
+        raise InputError(f"deck {includers[0]} has files that include each other {_DEEPEST} deep: "
+                         "put them into one")
     for number, line in enumerate(read_text(path, "deck", _REMEDY).splitlines(), 1):
         if line.startswith("**") or not line.strip():
             continue
-        row = Row(path, number, [])
+        row = Row(path, number, [], bool(includers))
         if not line.upper().startswith("*INCLUDE"):
             yield row, line
             continue
@@ -130,7 +147,7 @@ def _lines(path: Path, home: Path, depth: int) -> Iterator[tuple[Row, str]]:
         if not name:
             raise row.fault("*INCLUDE has no INPUT", "give INPUT=FILE")
         beside = path.parent / name
-        yield from _lines(beside if beside.exists() else home / name, home, depth + 1)
+        yield from _lines(beside if beside.exists() else home / name, home, (*includers, own))
 
 
 def _parsed(line: str) -> tuple[str, dict[str, str]]:
