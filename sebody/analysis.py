@@ -42,6 +42,8 @@ if TYPE_CHECKING:
         vibrations,
     )
     from sebody.small_motion.participation import EffectiveMasses, effective_masses
+    from sebody.small_motion.random_vibration import RandomResponse, random_response
+    from sebody.small_motion.shock import ShockSpectrum, combined, shock_spectrum
     from sebody.small_motion.state_space import StateSpace, state_space
 
 __all__ = [
@@ -62,6 +64,8 @@ __all__ = [
     "Modes",
     "Outcome",
     "Output",
+    "RandomResponse",
+    "ShockSpectrum",
     "Sizing",
     "StateSpace",
     "Unreached",
@@ -71,6 +75,7 @@ __all__ = [
     "at_time",
     "calibrate",
     "campbell",
+    "combined",
     "contributions",
     "effective_masses",
     "energy_gain",
@@ -84,10 +89,12 @@ __all__ = [
     "maximum",
     "minimum",
     "modes",
+    "random_response",
     "resume",
     "rms",
     "save_state",
     "sections",
+    "shock_spectrum",
     "size_heights",
     "soft_maximum",
     "spin_limit",

@@ -81,6 +81,19 @@ def shafts() -> Model:
     return model
 
 
+@cache
+def damped() -> Simulation:
+    """A ball on a spring and a damper, with a load."""
+    model = Model()
+    ball, ground = model.node("ball", (0.1, 0.0, 0.0)), model.node("ground", (0.1, 0.0, 0.0))
+    model.rigid_body("weight", ball, 2.0, np.diag([0.1, 0.2, 0.25]))
+    model.fix(ground)
+    model.bushing(ball, ground, (500.0, 400.0, 300.0), (5.0, 4.0, 3.0), (50.0, 40.0, 30.0),
+                  (0.5, 0.4, 0.3))
+    model.force(ball, (1.0, 0.0, 0.0), [(0.0, 0.0), (1.0, 0.0)], name="push")
+    return Simulation(model, 0.1)
+
+
 def _reduced(**arguments: Any) -> reduction.ReducedBody:
     """A block of bricks with the stress operator."""
     model = replace(fe_files.BLOCK, stress=(fem.SolidStress(**arguments),))
@@ -132,6 +145,15 @@ ANALYSIS = {
     "modes": Call(an.modes, lambda: {
         "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
     "effective_masses": Call(an.effective_masses, lambda: {"run": hanging(), "count": 1}),
+    "random_response": Call(an.random_response, lambda: {
+        "run": damped(), "psd": {"push": [(0.1, 1.0), (3.0, 2.0)]}, "quantities": "ball.position",
+        "spin": None, "frame": "auto", "hub": None}),
+    "shock_spectrum": Call(an.shock_spectrum, lambda: {
+        "t": [0.0, 1.0, 2.0], "acceleration": [0.0, 1.0, 0.0], "frequencies": [0.5, 2.0, 4.0, 5.0],
+        "damping": 0.05}),
+    "combined": Call(an.combined, lambda: {
+        "values": [1.0, -2.0, 0.5], "frequencies": [1.0, 2.0, 3.0], "damping": 0.05,
+        "rule": "CQC"}),
     "vibrations": Call(an.vibrations, lambda: {"run": hanging(), "count": 1}),
     "energy_gain": Call(an.energy_gain, lambda: {"model": mechanism(), "until": 0.1}),
     "resume": Call(an.resume, lambda: {"model": mechanism(), "path": "none.npz"}),
