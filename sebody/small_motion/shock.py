@@ -28,7 +28,8 @@ class ShockSpectrum(NamedTuple):
     acceleration: NDArray   # (m,) largest absolute value of the absolute acceleration
     displacement: NDArray   # (m,) largest absolute value of the displacement against the base
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        return brief(self)
 
 
 def shock_spectrum(t: ArrayLike, acceleration: ArrayLike, frequencies: ArrayLike,
@@ -67,14 +68,7 @@ def shock_spectrum(t: ArrayLike, acceleration: ArrayLike, frequencies: ArrayLike
         raise inputs.refusal("frequencies", f, "give one or more, all positive")
     damping = inputs.number(damping, "damping", least=0.0, below=1.0)
     omega = 2 * np.pi * f
-    parts = np.ceil(np.diff(t) * omega.max() / STEP)
-    if parts.sum() > MOST:
-        raise InputError(f"frequencies reach {f.max():.6g}, of which the history has "
-                         f"{f.max() * (t[-1] - t[0]):.3g} periods: leave out the highest")
-    counts = parts.astype(int)
-    before = np.repeat(np.cumsum(counts) - counts, counts)
-    share = (np.arange(counts.sum()) - before) / np.repeat(counts, counts)
-    fine = np.append(np.repeat(t[:-1], counts) + share * np.repeat(np.diff(t), counts), t[-1])
+    fine = _refined(t, omega.max())
     state, peaks = np.zeros((2, len(f))), np.zeros((2, len(f)))
     base = np.interp(fine, t, a)
     for first in range(0, len(fine) - 1, BLOCK):
@@ -84,6 +78,25 @@ def shock_spectrum(t: ArrayLike, acceleration: ArrayLike, frequencies: ArrayLike
     after = int(np.ceil(np.pi / STEP))
     _advance(state, peaks, np.tile(STEP / omega, (after, 1)), np.zeros(after + 1), omega, damping)
     return ShockSpectrum(f, damping, peaks[0], peaks[1])
+
+
+def _refined(t: NDArray, omega: float) -> NDArray:
+    """Times with others between them, no two further apart than an oscillator's steps.
+
+    Raises
+    ------
+    InputError
+        More than `MOST` of them.
+    """
+    parts = np.ceil(np.diff(t) * omega / STEP)
+    if parts.sum() > MOST:
+        f = omega / (2 * np.pi)
+        raise InputError(f"frequencies reach {f:.6g}, of which the history has "
+                         f"{f * (t[-1] - t[0]):.3g} periods: leave out the highest")
+    counts = parts.astype(int)
+    before = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(counts.sum()) - before) / np.repeat(counts, counts)
+    return np.append(np.repeat(t[:-1], counts) + share * np.repeat(np.diff(t), counts), t[-1])
 
 
 def _advance(state: NDArray, peaks: NDArray, h: NDArray, base: NDArray, omega: NDArray,
@@ -175,9 +188,14 @@ def combined(values: ArrayLike, frequencies: ArrayLike, damping: ArrayLike = 0.0
         return np.sqrt(np.sum(values**2, axis=0))
     if z.min() == 0.0:
         raise inputs.refusal("damping", damping, "CQC needs damping of all modes; SRSS has none")
+    squares = np.einsum("i...,ij,j...->...", values, _correlation(w, z), values)
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
+def _correlation(w: NDArray, z: NDArray) -> NDArray:
+    """Correlations of oscillators' responses to white noise, (m, m), by frequency and damping."""
     zz, ww = np.outer(z, z), np.outer(w, w)
     squares = np.add.outer(w**2, w**2)
-    correlation = (8 * np.sqrt(zz * ww) * np.add.outer(z * w, z * w) * ww
-                   / (np.subtract.outer(w**2, w**2)**2 + 4 * zz * ww * squares
-                      + 4 * np.add.outer(z**2, z**2) * ww**2))
-    return np.sqrt(np.maximum(np.einsum("i...,ij,j...->...", values, correlation, values), 0.0))
+    return (8 * np.sqrt(zz * ww) * np.add.outer(z * w, z * w) * ww
+            / (np.subtract.outer(w**2, w**2)**2 + 4 * zz * ww * squares
+               + 4 * np.add.outer(z**2, z**2) * ww**2))

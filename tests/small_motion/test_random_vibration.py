@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model
+from sebody import InputError, Model, simulate
 from sebody.analysis import equilibrium, random_response, vibrations
 from sebody.fem import rectangle, straight_beam
 from sebody.reduction import reduce
@@ -85,6 +85,33 @@ def test_tables_are_straight_in_logarithms():
 BETA = 2e-4         # damping by that of the stiffness
 
 
+def shaken(driven):
+    """A box on springs on a table that moves aslant, by a prescribed motion or by an equation."""
+    model, way = Model(), TURN @ (0.6, 0.0, 0.8)
+    table, box = model.node("table", (1.0, 2.0, 0.5)), model.node("box", (1.0, 2.0, 0.5))
+    inertia = np.diag([0.1, 0.2, 0.25])
+    model.rigid_body("weight", box, 2.0, inertia)
+    model.bushing(box, table, (300.0, 400.0, 500.0), (3.0, 4.0, 5.0), 50.0, 0.5)
+    if driven:
+        model.rigid_body("top", table, 1.0, inertia)
+        model.drive_slide(model.prismatic(table, axis=way), NONE, name="shaker")
+    else:
+        model.fix(table, "rotation")
+        model.move(table, way, NONE, name="shaker")
+    return equilibrium(model, 1)
+
+
+@pytest.mark.filterwarnings("ignore:drive 'shaker'")
+def test_a_shaker_by_an_equation_is_that_of_a_motion():
+    rows = [(0.1, 1.0), (2.0, 4.0), (50.0, 0.1)]
+    one, other = (random_response(shaken(driven), {"shaker": rows}, ["box.acceleration",
+                                                                     "box.position"])
+                  for driven in (False, True))
+    assert min(one.rms.values()) > 0.01
+    for name, value in one.rms.items():
+        assert other.rms[name] == pytest.approx(value, rel=1e-7), name
+
+
 def cantilever():
     """A bar of several modes, in general position."""
     bar = straight_beam((0, 0, 0), (2.0, 0, 0), rectangle(0.02, 0.05, 7e10, 0.3, 2700.0), 12)
@@ -115,6 +142,24 @@ def test_a_cantilever():
             total = total + np.trapezoid(density * np.abs(H)**2, f)
     assert_allclose([found.rms[f"tip.position.{axis}"] for axis in "xyz"], np.sqrt(total),
                     rtol=1e-6)
+
+
+def test_a_run_of_two_hundred_seconds():
+    """A load of many sines with random phases, which repeats after these seconds."""
+    model, period, h = oscillator(0.05), 200.0, 0.01
+    table = [(0.5, 2.0), (2.0, 6.0), (6.0, 0.5)]
+    f = np.arange(100, 1201) / period
+    density = np.exp(np.interp(np.log(f), *np.log(table).T))
+    density[[0, -1]] /= 2
+    lines = np.zeros(int(period / h), dtype=complex)
+    phases = np.random.default_rng(5).uniform(0.0, 2 * np.pi, len(f))
+    lines[100:1201] = np.sqrt(2 * density / period) * np.exp(1j * phases)
+    loads = np.tile(np.fft.fft(lines).real, 2)[:int(240.0 / h) + 1]
+    model.force("weight", ALONG, np.column_stack([h * np.arange(len(loads)), loads]), name="noise")
+    found = random_response(equilibrium(oscillator(0.05), 2), {"push": table}, "weight.velocity")
+    result = simulate(model, h, 240.0)
+    speeds = result["weight.velocity"][4000:24000] @ ALONG      # after a fall of exp(-24)
+    assert np.std(speeds) == pytest.approx(found.rms["weight.velocity.x"] / abs(ALONG[0]), rel=0.01)
 
 
 def test_what_is_refused():
