@@ -9,7 +9,7 @@ import pytest
 from sebody import InputError
 from sebody.cli.entry import main
 from sebody.explore.inspection import free_rigid_motion, inspect, measures, report
-from sebody.fem import hexahedral_block
+from sebody.fem import hexahedral_block, rectangle, straight_beam
 from sebody.io import read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
 
@@ -53,6 +53,22 @@ def test_mass_and_inertia_are_those_of_a_block(path):
     along = np.abs(numbers["principal_axes"].T @ TURN[:, order])
     np.testing.assert_allclose(along, np.eye(3), atol=1e-9)
     assert numbers["mass_geometry_defect"] < 1e-12
+
+
+def test_effective_masses_of_a_beam_with_held_ends(tmp_path):
+    """Of its first mode across ``(4 s / b)^2``, s = 0.982502 and b = 4.73004 of Euler's beam."""
+    beam = straight_beam((1, 2, 3), TURN[:, 0] * 2.0 + (1, 2, 3), rectangle(
+        0.002, 0.005, 7e10, 0.3, 2700.0), 40, up=TURN[:, 1])
+    beam_body = craig_bampton(beam, [(0, "full"), (40, "full")], 3)
+    for turned in (beam_body, beam_body.rotated(TURN)):
+        save_body(turned, tmp_path / "beam.npz", ("a", "b"))
+        found = inspect(read_body_file(tmp_path / "beam.npz"))
+        first = found.numbers["clamped"]["parts"][0, :3].sum()
+        assert first == pytest.approx((4 * 0.982502 / 4.73004)**2, rel=1e-3)
+        assert "interfaces held, Hz      part of mass " in report(found)
+    bare = craig_bampton(beam, [(0, "full"), (40, "full")], 0)
+    save_body(bare, tmp_path / "bare.npz", ("a", "b"))
+    assert "interfaces held" not in report(inspect(read_body_file(tmp_path / "bare.npz")))
 
 
 def test_what_is_of_second_order_is_counted(path, body, tmp_path):

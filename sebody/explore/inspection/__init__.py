@@ -47,6 +47,7 @@ def inspect(file: BodyFile) -> Inspection:
     numbers["asymmetry"] = body.asymmetry
     numbers["definiteness"] = measures.definiteness(body)
     numbers["frequencies"] = measures.frequencies(body)
+    numbers["clamped"] = measures.clamped(body, file.parts.get("modes", 0), numbers["centre"])
     numbers["frame"] = measures.frame(body, numbers["centre"])
     numbers["stiffening"] = measures.stiffening(file, body)
     findings = findings_of(file, body, numbers)
@@ -69,7 +70,8 @@ def to_json(inspection: Inspection) -> str:
 def report(inspection: Inspection) -> str:
     """The same in words."""
     file, numbers = inspection.file, inspection.numbers
-    sections = [*_layout(file), *_inertia(numbers), *_motion(numbers), *_vibration(numbers)]
+    sections = [*_layout(file), *_inertia(numbers), *_motion(numbers), *_vibration(numbers),
+                *_effective_masses(numbers["clamped"])]
     lines = [f"{name:24} {text}" for name, text in sections]
     for one in inspection.findings:
         lines += [f"{one.severity}: {one.text}", f"  remedy: {one.remedy}"]
@@ -122,6 +124,20 @@ def _vibration(numbers: dict) -> list[tuple[str, str]]:
                  ("step, six a period", f"{_number(hertz['step_first'])} of the first, "
                   f"{_number(hertz['step_highest'])} of the highest")]
     return rows
+
+
+def _effective_masses(clamped: dict) -> list[tuple[str, str]]:
+    """Parts of the mass that vibrations with held interfaces move; of many the first."""
+    if not len(clamped["frequencies"]):
+        return []
+    def row(parts: np.ndarray) -> str:
+        return "".join(f"{part:9.4f}" for part in parts)
+    heads = "".join(f"{one:>9}" for one in clamped["directions"])
+    shown = zip(clamped["frequencies"][:measures.SHOWN], clamped["parts"], strict=False)
+    return [("interfaces held, Hz", f"{'part of mass':12} {heads}"),
+            *((f"  mode {k + 1}", f"{_number(hertz):12} {row(parts)}")
+              for k, (hertz, parts) in enumerate(shown)),
+            ("  all modes", f"{'':12} {row(clamped['parts'].sum(axis=0))}")]
 
 
 def _number(value: float) -> str:

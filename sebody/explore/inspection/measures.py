@@ -169,6 +169,26 @@ def frequencies(body: Matrices) -> dict:
             "step_highest": 1 / (PERIOD * last) if last > 0 else np.inf, "following": following}
 
 
+def clamped(body: Matrices, modes: int, centre: NDArray) -> dict:
+    """Frequencies (k,) in Hz of vibrations with all interfaces held, and the part of the mass, and
+    of the moments of inertia about the centre, that each moves, (k, motions); see `directions`.
+
+    With shapes s of unit mass and rigid motions R, ``(R^T M s)^2`` over ``R^T M R``.
+    """
+    own = slice(len(body.mass) - modes, None)
+    rigid = rigid_motions(body.coordinates, body.keeps, len(body.mass), centre)
+    whole = np.diag(rigid.T @ body.mass @ rigid)
+    try:
+        squares, shapes = (eigh(body.stiffness[own, own], body.mass[own, own]) if modes else
+                           (np.zeros(0), np.zeros((0, 0))))
+    except LinAlgError:     # masses that are none, which findings name
+        squares, shapes = np.zeros(0), np.zeros((modes, 0))
+    parts = (rigid.T @ body.mass[:, own] @ shapes)**2 / np.where(whole > 0, whole, np.inf)[:, None]
+    return {"frequencies": np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi), "parts": parts.T,
+            "directions": ["x", "y", "about z"] if body.dimension == 2 else
+            ["x", "y", "z", "about x", "about y", "about z"]}
+
+
 def free_modes(body: Matrices, most: int) -> tuple[NDArray, NDArray]:
     """Frequencies (k,) in Hz of the lowest free vibrations, and their motions (n, k)."""
     try:
