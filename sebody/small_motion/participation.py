@@ -5,6 +5,8 @@ and unit mass has the participation factor ``L = s^T M r`` and the effective mas
 all vibrations sum to the mass, less what the supports carry rigidly.
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

@@ -11,6 +11,8 @@ node, however small the damping is. Upward zero crossings are ``sqrt(m_2 / m_0)`
 m_n the integral of ``f^n S df`` (S. O. Rice, Bell System Technical Journal 24, 1945, p. 46).
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 

@@ -5,6 +5,8 @@ to an acceleration a of their base that is linear between its rows. Every step i
 and P. C. Jennings, Bulletin of the Seismological Society of America 59, 1969, p. 909).
 """
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

@@ -264,6 +264,5 @@ def test_a_point_mass_leaves_a_rotation_without_mass():
     model.fix(hinge, "position")
     model.point_mass("ball", model.attach("bob", (1, 0, 0), hinge), 1.0)
     with pytest.raises(InputError, match="mass matrix is singular: hinge.rotation.0. moves no "
-                                         "mass; add "
-                                         "mass or inertia there"):
+                                         "mass, and nothing stiff holds it; add mass or inertia"):
         Simulation(model, 0.01)
