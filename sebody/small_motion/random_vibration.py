@@ -22,6 +22,7 @@ from scipy.linalg import eig, matrix_balance, schur
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
+from sebody.fem.beam_stress import BeamStress
 from sebody.model.parts import Node
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
@@ -77,7 +78,8 @@ def random_response(run: Simulation | Result, psd: Mapping[str, ArrayLike],
         of the acceleration in units of the model [(m/s^2)^2/Hz, not g^2/Hz].
     quantities : str or iterable of str
         Names of quantities, as of a `Result`. Those with components are told by component, as
-        ``"tip.position.x"``. All are changes from the state of the run.
+        ``"tip.position.x"`` and, of stresses of solids at FE nodes, ``"block.node12.stress.xx"``.
+        All are changes from the state of the run, of first order.
     spin, frame, hub
         Of a steady rotation, see `modes`.
 
@@ -96,6 +98,7 @@ def random_response(run: Simulation | Result, psd: Mapping[str, ArrayLike],
         psd, "psd", "give tables (frequency, density) by the names of inputs").items()}
     if not tables:
         raise inputs.refusal("psd", psd, "name at least one input")
+    _refuse_crooked(run, quantities)
     system = state_space(run, list(tables), quantities, spin, frame, hub)
     rows = np.unique(np.concatenate([table[:, 0] for table in tables.values()]))
     f, weights = _nodes(rows, _poles(system, rows) / (2 * np.pi))
@@ -110,6 +113,25 @@ def random_response(run: Simulation | Result, psd: Mapping[str, ArrayLike],
     return RandomResponse(f, dict(zip(system.outputs, squares.T, strict=True)),
                           dict(zip(system.outputs, map(float, np.sqrt(m0)), strict=True)),
                           dict(zip(system.outputs, map(float, crossings), strict=True)))
+
+
+def _refuse_crooked(run: Simulation | Result, quantities: str | Iterable[str]) -> None:
+    """Refuse stresses that do not follow a small motion in proportion."""
+    names = [quantities] if isinstance(quantities, str) else inputs.items(
+        quantities, "quantities", "give names of quantities")
+    bodies = run.model.bodies if isinstance(run, Simulation | Result) else {}
+    for name in filter(lambda one: isinstance(one, str), names):
+        owner, _, inside = name.rpartition(".node")
+        body = bodies.get(owner)
+        recovery = None if body is None else body.reduced.recovery
+        kinds = recovery.stress if recovery is not None else ()
+        parts = inside.split(".")[1:2]
+        if parts == ["von_mises"]:
+            raise InputError(f"quantity {name!r} is no linear function of the motion, so random "
+                             "response has no density of it: name components of stress")
+        if parts == ["stress"] and any(isinstance(one, BeamStress) for one in kinds):
+            raise InputError(f"quantity {name!r} is the stress of the most stressed fibre, another "
+                             "at every instant: name section_forces of the node")
 
 
 def _table(name: Any, rows: ArrayLike) -> NDArray:

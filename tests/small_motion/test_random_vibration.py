@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import equilibrium, random_response, vibrations
-from sebody.fem import rectangle, straight_beam
-from sebody.reduction import reduce
+from sebody.fem import hexahedral_block, rectangle, straight_beam
+from sebody.reduction import RigidFace, craig_bampton, reduce
 
 TURN = Rotation.from_rotvec((0.7, -1.1, 0.4)).as_matrix()
 NONE = [(0.0, 0.0), (1.0, 0.0)]
@@ -160,6 +160,34 @@ def test_a_run_of_two_hundred_seconds():
     result = simulate(model, h, 240.0)
     speeds = result["weight.velocity"][4000:24000] @ ALONG      # after a fall of exp(-24)
     assert np.std(speeds) == pytest.approx(found.rms["weight.velocity.x"] / abs(ALONG[0]), rel=0.01)
+
+
+def test_stresses_in_a_block():
+    """Far below the resonances: the stress of an equilibrium under a small load, in proportion."""
+    size, ends = (12.0, 1.0, 1.0), (0.0, 12.0)
+    block = hexahedral_block((0, 0, 0), size, (12, 2, 2), 4e6, 0.0, 1e-3)
+    x, middle = block.coordinates[:, 0], (0.5, 0.5)
+    faces = [RigidFace((end, *middle), np.flatnonzero(np.isclose(x, end))) for end in ends]
+    body = craig_bampton(block, [(face, "full") for face in faces], 4).damped(0.02)
+    model = Model()
+    root, tip = (model.node(name, TURN @ (end, *middle)) for name, end in zip("rt", ends,
+                                                                              strict=True))
+    model.superelement("block", body, (root, tip), rotation=TURN)
+    model.force(tip, TURN[:, 2], NONE, name="push")
+    model.fix(root)
+    node = int(np.argmin(np.linalg.norm(block.coordinates - (6.0, 0.5, 1.0), axis=1)))
+    run, rows = equilibrium(model, 1), [(1e-4, 3.0), (2e-4, 3.0)]
+    found = random_response(run, {"push": rows}, f"block.node{node}.stress")
+    model.force(tip, TURN[:, 2], [(0.0, 0.01), (1.0, 0.01)], name="still")
+    bent = equilibrium(model, 1)[f"block.node{node}.stress"][-1] / 0.01
+    assert abs(bent[0]) > 10.0      # of unit loads; 36 by the modulus of the section
+    for k in (0, 4):        # xx and zx
+        name = f"block.node{node}.stress." + ("xx", "yy", "zz", "yz", "zx", "xy")[k]
+        assert found.rms[name] == pytest.approx(np.sqrt(3e-4) * abs(bent[k]), rel=1e-4)
+    with pytest.raises(InputError, match="name components of stress"):
+        random_response(run, {"push": rows}, f"block.node{node}.von_mises")
+    with pytest.raises(InputError, match="most stressed fibre"):
+        random_response(cantilever(), {"push": rows}, "bar.node4.stress.xx")
 
 
 def test_what_is_refused():
