@@ -79,6 +79,11 @@ class Recovery:
         """Number in the FE model of a node, by its place among those that are kept."""
         return int(place) if self.nodes is None else int(self.nodes[place])
 
+    @property
+    def fibred(self) -> bool:
+        """Whether stresses are those of fibres of beams, of which nodes have the largest."""
+        return any(isinstance(one, BeamStress) for one in self.stress)
+
     def called(self, place: int) -> int:
         """The label of a node that is kept, or its number in the FE model if it has none."""
         return self.number(place) if self.labels is None else int(self.labels[place])

@@ -22,7 +22,6 @@ from scipy.linalg import eig, matrix_balance, schur
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
-from sebody.fem.beam_stress import BeamStress
 from sebody.model.parts import Node
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
@@ -124,12 +123,11 @@ def _refuse_crooked(run: Simulation | Result, quantities: str | Iterable[str]) -
         owner, _, inside = name.rpartition(".node")
         body = bodies.get(owner)
         recovery = None if body is None else body.reduced.recovery
-        kinds = recovery.stress if recovery is not None else ()
         parts = inside.split(".")[1:2]
         if parts == ["von_mises"]:
             raise InputError(f"quantity {name!r} is no linear function of the motion, so random "
                              "response has no density of it: name components of stress")
-        if parts == ["stress"] and any(isinstance(one, BeamStress) for one in kinds):
+        if parts == ["stress"] and recovery is not None and recovery.fibred:
             raise InputError(f"quantity {name!r} is the stress of the most stressed fibre, another "
                              "at every instant: name section_forces of the node")
 
