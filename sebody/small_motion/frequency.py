@@ -127,10 +127,10 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
         inputs.name(name, "name of a quantity")
     refuse_unmoved(names, "harmonic response")
     axes = view(run, spin, frame, hub)
-    if spin is None:
-        warn_of_spin(run, np.abs(omega), "a harmonic response")
     with steady(run, axes.spin):
         matrices = small_motion(run, axes)
+        if spin is None:
+            warn_of_spin(run, np.abs(omega), "a harmonic response")
         forces, push = by_amplitude(run, _load(run, load))
         X = _answers(matrices, axes.pushed(run, push), omega)
         w = 1j * omega[:, None]
