@@ -41,7 +41,7 @@ class LawInputs(NamedTuple):
 
 
 class Depends(NamedTuple):
-    """What inputs of a continuous controller depend on, and what their tape takes."""
+    """Dependences of the inputs of a continuous controller, and the numbers of their tape."""
 
     places: list[Attachment]
     modes: tuple[tuple[str, int], ...]      # superelement and internal mode
@@ -89,7 +89,7 @@ def law_inputs(model: Mechanism, numbering: Numbering, controller: Controller) -
 
 
 def dependences(model: Mechanism, laws: Iterable[Element]) -> dict[Element, Depends]:
-    """What inputs of continuous controllers depend on, before coordinates have numbers."""
+    """Dependences of the inputs of continuous controllers, before coordinates have numbers."""
     laws = list(laws)
     if not laws:
         return {}

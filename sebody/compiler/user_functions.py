@@ -53,7 +53,7 @@ class UserFunction:
         self.record[FAULT] = 0.0
 
     def fault(self, since: float, until: float = np.inf) -> str:
-        """What the function did at its last fault, and when; empty if it was at another time."""
+        """The last fault of the function, with its time, in words; empty if at another time."""
         if not (self.record[FAULT] and since <= self.record[TIME] <= until):
             return ""
         t, others = float(self.record[TIME]), self.record[OTHERS:].copy()
@@ -83,7 +83,7 @@ class ControlFunction(UserFunction):
         self.sizes = sizes
 
     def fault(self, since: float, until: float = np.inf) -> str:
-        """What the controller did at its last fault, and when; empty if it was at another time."""
+        """The last fault of the controller, with its time, in words; empty if at another time."""
         if not (self.record[FAULT] and since <= self.record[TIME] <= until):
             return ""
         t = float(self.record[TIME])

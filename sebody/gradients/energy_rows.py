@@ -46,7 +46,7 @@ AXES = 3
 
 @dataclass(frozen=True, eq=False)
 class EnergyRows(Arrays):
-    """What derivatives of energies are made of.
+    """Parts of the derivatives of energies.
 
     ==========  ====================================================================================
     wanted      (energies,) 1 for each of `layout.ENERGIES` whose derivatives are asked for

@@ -51,7 +51,7 @@ class Numbering(NamedTuple):
 
     @property
     def memories(self) -> dict[Element, list[int]]:
-        """What elements keep: places in `State.frames`."""
+        """Memories of elements: places in `State.frames`."""
         return self.memory.memories
 
     @property
@@ -66,7 +66,7 @@ class Numbering(NamedTuple):
 
     @property
     def memory(self) -> MemoryMap:
-        """What is stored from step to step, of a numbering that is complete."""
+        """Map of what is stored from step to step, of a numbering that is complete."""
         assert self.memory_map is not None
         return self.memory_map
 

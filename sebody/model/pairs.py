@@ -27,7 +27,7 @@ def pair(model: Mechanism, node: Node | str, to: Node | str | None, what: str,
 
 
 def on_ground(model: Mechanism, to: Node | str | None) -> bool:
-    """Whether the other node is the ground: none is given, or its name, which no node has."""
+    """Tell whether the other node is the ground: none is given, or a name that no node has."""
     return to is None or (isinstance(to, str) and to == GROUND and to not in model.nodes)
 
 

@@ -146,7 +146,7 @@ class _Coefficients(NamedTuple):
     @classmethod
     def of(cls, model: Mechanism, a: Node, what: str, ways: ArrayLike, turns: ArrayLike
            ) -> _Coefficients:
-        """What a user gives: numbers, or matrices."""
+        """Coefficients as a user gives them: numbers, or matrices."""
         where = f"bushing at {a.name!r} has a coefficient that is negative or no number: "
         d, size = model.dimension, model.rotation_size
         if np.ndim(ways) != 2:

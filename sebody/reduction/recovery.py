@@ -81,7 +81,7 @@ class Recovery:
 
     @property
     def fibred(self) -> bool:
-        """Whether stresses are those of fibres of beams, of which nodes have the largest."""
+        """True where stresses are those of fibres of beams, of which nodes have the largest."""
         return any(isinstance(one, BeamStress) for one in self.stress)
 
     def called(self, place: int) -> int:

@@ -59,7 +59,7 @@ def of_start(system: System, state: State, numbering: Numbering) -> str:
 
 
 def _unsettled(system: System, state: State, numbering: Numbering) -> str:
-    """What the last corrections of accelerations and multipliers changed most, and why."""
+    """Name the largest of the last corrections of accelerations and multipliers, and the reason."""
     n = system.diagonal.size
     change = np.abs(state.correction[:n] * state.weight[:n])
     if not np.isfinite(change).all():

@@ -246,7 +246,7 @@ class Loading:
                 "the model with damping until it rests")
 
     def _searched(self) -> str:
-        """How long stable states were looked for in vain."""
+        """Length of searches for stable states that were in vain."""
         return f", where {self._work.vain} iterations found none" * bool(self._work.vain)
 
     def _softest_now(self, tangent: csc_matrix) -> str:

@@ -202,7 +202,7 @@ class Solver:
                              "stiff holds it; add mass or inertia there, fix it, or leave it out")
 
     def _held(self, system: System, resisting: csc_matrix) -> tuple[bool, NDArray | None]:
-        """Whether stiffness holds all motions without mass, and a motion that it does not hold.
+        """Tell if stiffness holds all motions without mass, and name one that it does not hold.
 
         Motions are found from all unknowns without inertia at once. What a load adds to the
         stiffness of a body that turns under it has no part among these motions.

@@ -30,7 +30,7 @@ from sebody.runs.simulation import Simulation
 
 
 class Turning(NamedTuple):
-    """How a part turns: about a line through a point, at a multiple of the spin."""
+    """Rotation of a part: about a line through a point, at a multiple of the spin."""
 
     point: NDArray
     factor: float
@@ -63,7 +63,7 @@ class Spin:
         return Spin(factor * self.velocity, self.planar, self.parts)
 
     def turning(self, dof_block: DofBlock) -> Turning | None:
-        """How a block turns; None of one that stands."""
+        """Rotation of a block; None of one that stands."""
         if self.parts is None:
             return Turning(np.zeros(2 if self.planar else 3), 1.0)
         return self.parts.get(dof_block)

@@ -185,7 +185,7 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
 
 
 def _is_least(run: Simulation, tangent: csc_matrix, unit: float, rests: bool) -> bool:
-    """Whether a potential is least; stiffer springs cost less than certainty until it rests."""
+    """Tell if a potential is least; stiffer springs cost less than certainty until it rests."""
     stiffness = Stiffness(run, tangent, unit)
     return stiffness.stable() if rests else stiffness.surely_stable()
 

@@ -43,7 +43,7 @@ class Line(NamedTuple):
             off if len(self.direction) == 1 else off - off @ self.direction * self.direction))
 
     def velocity(self, point: NDArray) -> NDArray:
-        """Of a point that turns at unit speed."""
+        """Velocity of a point that turns at unit speed."""
         x, y = (point - self.point)[:2]
         return (np.array([-y, x]) if len(self.direction) == 1 else
                 np.cross(self.direction, point - self.point))
@@ -114,7 +114,7 @@ class Mechanics:
         return found
 
     def _about(self, line: Line, hub: Node | None) -> dict[DofBlock, Turning]:
-        """What turns freely about a line, with what gears turn elsewhere."""
+        """Find what turns freely about a line, with what gears turn elsewhere."""
         groups = self._tied(line)
         free = {groups.of(t) for t in self.blocks if self._counts(t, line)} - {GROUND}
         if hub is not None:
@@ -127,7 +127,7 @@ class Mechanics:
         return self._with_centres(members | self._geared(line, members))
 
     def _counts(self, dof_block: DofBlock, line: Line) -> bool:
-        """Whether turning about a line moves a block."""
+        """Tell whether turning about a line moves a block."""
         return dof_block.rotational or line.away(dof_block.start) > self._near
 
     def _tied(self, line: Line) -> _Groups:
@@ -160,7 +160,7 @@ class Mechanics:
         return groups
 
     def _resists(self, one: _Touching, blocks: list[DofBlock], line: Line) -> bool:
-        """Whether an element resists that some blocks turn about a line, and others do not."""
+        """Tell if an element resists that some blocks turn about a line, and others do not."""
         forces, terms = self._force(one, blocks, line)
         return bool(np.abs(forces).max(initial=0.0) > RESISTED * terms)
 

@@ -128,7 +128,7 @@ def linearized(run: Simulation | Result, axes: View) -> Linearization:
 
 
 def _said(following: int) -> str:
-    """What a title says of motions without mass."""
+    """Words of a title on motions without mass."""
     return f"; {counted(following, 'motion')} without mass follow statically" if following else ""
 
 

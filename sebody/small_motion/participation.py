@@ -34,7 +34,7 @@ class EffectiveMasses(NamedTuple):
         return tabular.text(*self._table())
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """Tables that notebooks show."""
         return tabular.titled(*self._table())
 
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:

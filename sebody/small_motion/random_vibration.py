@@ -49,7 +49,7 @@ class RandomResponse(NamedTuple):
         return tabular.text(*self._table())
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """Tables that notebooks show."""
         return tabular.titled(*self._table())
 
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
@@ -171,7 +171,7 @@ def _poles(system: StateSpace, rows: NDArray) -> NDArray:
 
 
 def _seen(poles: NDArray, left: NDArray, right: NDArray, B: NDArray, C: NDArray) -> NDArray:
-    """Whether some input moves a mode that some quantity shows, by more than rounding."""
+    """Tell whether some input moves a mode that some quantity shows, by more than rounding."""
     moved, shown = np.abs(left @ B), np.abs(C @ right).T
     clear = moved > SEEN * np.linalg.norm(B, axis=0), shown > SEEN * np.linalg.norm(C, axis=1)
     masses = np.abs(np.einsum("ij,ji->i", left, right)) * np.abs(poles)

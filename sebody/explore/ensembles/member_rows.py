@@ -118,7 +118,7 @@ def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
 
 
 def _parts_of_law(law: NDArray) -> tuple[NDArray, NDArray]:
-    """What a continuous controller reads and sets, see `contract.law_row`."""
+    """Inputs and outputs of a continuous controller, see `contract.law_row`."""
     reads = law[LAW_HEADER:LAW_HEADER + READ_PLACES * law[READS]]
     first = law[AT_OUTPUTS]
     ends = law[first:first + OUTPUT_PLACES * law[OUTPUTS]]

@@ -199,7 +199,7 @@ class Table:
 
     @staticmethod
     def is_in(path: Path) -> bool:
-        """Whether an npz file holds the table of a sweep, not a result; see `load`."""
+        """Tell the table of a sweep in an npz file from a result; see `load`."""
         with opened(path, "results file", "give one that was saved") as reader:
             return "design" in reader.headers
 

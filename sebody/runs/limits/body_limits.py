@@ -115,7 +115,7 @@ def between_nodes(psi: NDArray) -> NDArray:
 
 
 def _follows_rotations(body: Superelement) -> bool:
-    """Whether a body of option C has its frame on rotations."""
+    """True for a body of option C with its frame on rotations."""
     return body.inertia == "floating_field" and FRAMES[body.frame].traits.needs_rotations
 
 

@@ -93,7 +93,7 @@ def found_blades(run: Simulation | Result, spin: Spin, hub: Node) -> Blades:
 
 
 class _Part(NamedTuple):
-    """What hangs together beyond the hub."""
+    """Parts that hang together beyond the hub."""
 
     nodes: list[Node]
     bodies: list[Superelement]

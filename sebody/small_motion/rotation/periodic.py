@@ -1,4 +1,4 @@
-"""What turns and what stands without axes in which all matrices are constant.
+"""Models whose matrices are constant in no axes: what turns and what stands is periodic.
 
 Blades are told in multi-blade coordinates and all else that turns in standing axes, see `azimuths`.
 Equal blades leave a ripple alone, of which the matrices are averaged over a revolution: after the

@@ -133,7 +133,7 @@ class View:
         return Coordinates.of(run, self.spin, blades)
 
     def _generator(self, run: Simulation | Result) -> NDArray:
-        """Of base coordinates by those of these axes, of the unknowns in their own axes."""
+        """Matrix of base coordinates by those of these axes, of the unknowns in their own axes."""
         base = Base.of(run, self.spin)
         return base.axes.T @ (base.still if self.frame == "standing" else base.turned) @ base.axes
 
@@ -209,7 +209,7 @@ def _not_constant(run: Simulation | Result, worst: dict[str, _Change]) -> str:
 
 
 def _stands(model: Model, parts: dict[DofBlock, Turning]) -> bool:
-    """Whether anything stands: fixed or free blocks that do not turn."""
+    """Tell whether anything stands: fixed or free blocks that do not turn."""
     blocks = [t for n in (*model.nodes.values(), *model.grounds) for t in (n.position, n.rotation)
               if t is not None]
     return any(t not in parts or t.fixed for t in blocks)
@@ -223,7 +223,7 @@ class _Change(NamedTuple):
 
 
 def _change(run: Simulation | Result, spin: Spin, base: Base, frame: str) -> _Change:
-    """How far matrices in some axes change with the azimuth."""
+    """Changes of matrices in some axes with the azimuth."""
     speed = float(np.sqrt(spin.squared))
     multipliers = np.flatnonzero(run.arrays_of_loop[0].is_multiplier[:run.numbering.free] > 0)
     moving = np.setdiff1d(np.arange(run.numbering.free), multipliers)
