@@ -67,8 +67,10 @@ ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *MOTIONS)
 
 # with products of their derivatives, of which gradients of runs are made: general superelements and
 # the layouts of beams, others take these; no frames that depend on the steps before
+UNSHIPPED = "bearing", "planar_bearing"     # whose products are derived where they are wanted
 LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])
       and (row[0] in LAYOUTS or row[2] == "frame_axes")),
-    *SMOOTH, *LAWS, *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))
+    *(name for name in SMOOTH if name not in UNSHIPPED), *LAWS,
+    *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))
