@@ -65,9 +65,10 @@ SUPERELEMENTS = (
 )
 ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *MOTIONS)
 
+# long kernels of rare elements: gradients of runs with these take matrices in place of products
+UNSHIPPED = "bearing", "planar_bearing"
 # with products of their derivatives, of which gradients of runs are made: general superelements and
 # the layouts of beams, others take these; no frames that depend on the steps before
-UNSHIPPED = "bearing", "planar_bearing"     # whose products are derived where they are wanted
 LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])

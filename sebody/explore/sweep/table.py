@@ -120,14 +120,14 @@ class Table:
         whole = len(counts) in (1, 2) and np.prod(list(counts.values())) == self.runs
         return list(counts) if whole and self.runs <= MOST_LISTED else []
 
-    def answers(self) -> str:
-        """Values of `axes` and of the outputs, a line for each run."""
+    def _answers(self) -> tuple[list[str], list[list[str]]]:
+        """Heads and rows of a table of `axes` and of the outputs, a row for each run."""
         columns, axes = self.columns(), self.axes()
         outputs = [name for name in columns if name.partition("[")[0] in self.outputs]
-        rows = [[*(_number(columns[name][k]) for name in axes),
-                 *(_number(self._rounded(name, columns[name][k])) for name in outputs)]
-                for k in range(self.runs)]
-        return text("", [*axes, *outputs], rows).lstrip("\n")
+        return [*axes, *outputs], [
+            [*(_number(columns[name][k]) for name in axes),
+             *(_number(self._rounded(name, columns[name][k])) for name in outputs)]
+            for k in range(self.runs)]
 
     def _rounded(self, column: str, value: float) -> float:
         return value if not abs(value) <= self.rounding(column) else 0.0
@@ -153,8 +153,8 @@ class Table:
         lines += [f"  {list(self.failures).count(r)} x {r}" for r in reasons[-3:][::-1]]
         quantiles = self.quantiles()
         if quantiles and self.axes():
-            lines.append(self.answers())
-        elif quantiles:
+            return text("\n".join(lines), *self._answers())
+        if quantiles:
             width = max(map(len, quantiles))
             lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
             lines += [f"{name:{width}} " + " ".join(

@@ -9,12 +9,10 @@ from sebody.contract.names import ELEMENT
 from sebody.model import joints
 from sebody.model.model import Model
 
-# the axes that a joint is made with, in space; those of a plane are the first two numbers of each
-JOINTS: dict[str, tuple[tuple[float, ...], ...]] = {
-    "revolute": ((0.0, 0.0, 1.0),), "universal": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),
-    "cylindrical": ((1.0, 0.0, 0.0),), "prismatic": ((1.0, 0.0, 0.0),),
-    "slider": ((1.0, 0.0, 0.0),), "planar_joint": ((1.0, 0.0, 0.0),), "spherical": (), "weld": (),
-    "distance": ()}
+# the axes that a joint is made with, by names that hold in space and in a plane
+JOINTS: dict[str, tuple[str, ...]] = {
+    "revolute": ("z",), "universal": ("x", "y"), "cylindrical": ("x",), "prismatic": ("x",),
+    "slider": ("x",), "planar_joint": ("x",), "spherical": (), "weld": (), "distance": ()}
 
 
 def chosen_kernels(names: Iterable[str], known: Iterable[str]) -> list[str]:
@@ -54,9 +52,8 @@ def _of_joint(name: str) -> list[str]:
                 n = model.dimension
                 model.node("a", (0.0,) * n)
                 model.node("b", (float(name == "distance"),) + (0.0,) * (n - 1))
-                axes = {} if planar and name == "revolute" else JOINTS[name]
                 try:
-                    made = build(model, "a", *(axis[:n] for axis in axes), to=to, **given)
+                    made = build(model, "a", *JOINTS[name], to=to, **given)
                 except InputError:      # there is none in a plane, or none to the ground
                     continue
                 kinds |= dict.fromkeys(one.kind for one in made.constraints)
