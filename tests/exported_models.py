@@ -30,6 +30,7 @@ def arm() -> Model:
     model.beam("upper arm", (shoulder, hand), SECTION, 6, 1, 2, up=TURN @ (0.0, 0.0, 1.0))
     model.revolute(shoulder, axis=TURN @ (0.0, 0.0, 1.0), name="joint 1")
     model.rigid_body("load at the hand", hand, 0.2, 1e-3 * np.eye(3))
+    model.unbalance(hand, 0.003, 0.4)
     model.actuator("motor 1", joint="joint 1", limit=30.0, lag=0.004)
     model.controller("loop", feedback, ["joint 1.angle", "joint 1.rate"], ["motor 1"], 0.004,
                      states=[0.1], parameters=[12.0, 0.8, 0.05])

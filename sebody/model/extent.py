@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.model.mechanism import Mechanism
+from sebody.model.shafts import is_unbalance
 from sebody.reduction import ReducedBody
 
 # constants of elements that are lengths, and moments of inertia of rigid bodies
@@ -22,6 +23,8 @@ def extent(model: Mechanism) -> float:
     lengths += [_size(reduced) for reduced in
                 {body.reduced: body.reduced for body in model.bodies.values()}.values()]
     for body in model.rigid_bodies.values():
+        if is_unbalance(body):
+            continue
         moments = [body.number(name) for name in MOMENTS if name in body.constants]
         lengths.append(float(np.sqrt(max(moments, default=0.0) / body.number("mass"))))
     lengths += [element.number(name) for element in (*model.loads, *model.constraints)

@@ -22,6 +22,7 @@ from sebody.model import (
     nodes,
     sensors,
     series,
+    shafts,
     springs,
 )
 from sebody.model.atomic import atomic_builders
@@ -70,6 +71,7 @@ class Model(Mechanism):
     foundation = foundations.foundation
     rigid_body = bodies.rigid_body
     point_mass = bodies.point_mass
+    unbalance = shafts.unbalance
     beam = beams.beam
 
     fix = joints.fix

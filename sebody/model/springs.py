@@ -14,6 +14,7 @@ from sebody.model.hinges import about, check_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
+from sebody.model.shafts import shaft_axes
 
 
 def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
@@ -208,12 +209,7 @@ def _bushing_axes(model: Mechanism, a: Node, rotation: ArrayLike | None, axis: A
     length = np.linalg.norm(third)
     if not length > 0.0:
         raise InputError(f"bushing at {a.name!r}: axis has no length: give the shaft's direction")
-    third = third / length
-    k = int(np.argmax(np.abs(third)))
-    first = np.eye(3)[(k + 1) % 3]
-    first = first - first @ third * third
-    first /= np.linalg.norm(first)
-    return np.column_stack([first, np.cross(third, first), third])
+    return shaft_axes(third / length)
 
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node,

@@ -3,9 +3,12 @@
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from sebody.basics.tabular import counted, table, text, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Node
+from sebody.model.shafts import is_unbalance
 from sebody.model.ties import untied
 
 
@@ -86,9 +89,10 @@ def _bodies(model: Mechanism) -> list[tuple]:
              f"{body.reduced.modes} modes; frame {body.frame}, inertia {body.inertia}"
              + ("; damped" if body.reduced.damping is not None else ""))
             for body in model.bodies.values()]
-    return rows + [(body.name, _plain(body), f"{body.number('mass'):.6g}",
+    return rows + [(body.name, "unbalance" if is_unbalance(body) else _plain(body),
+                    f"{body.number('mass'):.6g}",
                     _named({place.node.name: place.node for place in body.attachments}.values()),
-                    "")
+                    f"m r {np.linalg.norm(body.vector('mc')):.6g}" if is_unbalance(body) else "")
                    for body in model.rigid_bodies.values()]
 
 

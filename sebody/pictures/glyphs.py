@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Joint, Node
+from sebody.model.shafts import is_unbalance
 from sebody.pictures.wireframe import neighbours
 
 SPRINGS = "spring", "planar_spring"
@@ -66,7 +67,8 @@ def signs(model: Mechanism, nodes: set[str]) -> list[Sign]:
             drawn.append(Sign(kind, node.name, node.name, ABOUT_Z, node.name))
     drawn += [Sign("mass", body.name, body.attachments[0].node.name, ABOUT_Z,
                    body.attachments[0].node.name)
-              for body in model.rigid_bodies.values() if body.kind.endswith("point_mass")]
+              for body in model.rigid_bodies.values()
+              if body.kind.endswith("point_mass") or is_unbalance(body)]
     return [sign for sign in drawn if {sign.node, sign.carrier} <= nodes]
 
 

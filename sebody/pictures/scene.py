@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from sebody.basics.errors import InputError
 from sebody.basics.units import Units
 from sebody.model.mechanism import Mechanism
+from sebody.model.shafts import is_unbalance
 from sebody.pictures.arrows import Arrow, arrows
 from sebody.pictures.contact_surfaces import ContactSurface, contact_surfaces, vertices_of
 from sebody.pictures.drawn_bodies import DrawnBody, flexible, rigid, with_stress
@@ -85,7 +86,8 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
     if stressed:
         bodies = [with_stress(result, body, states) for body in bodies]
     bodies += [rigid(model, part, *nodes[part.attachments[0].node.name][1:])
-               for part in model.rigid_bodies.values() if part.kind.endswith("rigid_body")]
+               for part in model.rigid_bodies.values()
+               if part.kind.endswith("rigid_body") and not is_unbalance(part)]
     drawn = {body.name for body in bodies}
     lines = links(model, set(nodes), drawn)
     return Scenery(result.t[states], states, bodies, _entries(model, bodies, lines), nodes, lines,

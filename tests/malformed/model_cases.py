@@ -161,6 +161,12 @@ BODIES = {
                               (-1.0, 1.0, 1.0)),
                         ([[1, 1, 0], [0, 1, 0], [0, 0, 1]], "inertia of 'new' is not symmetric")],
             "centre": [pair for pair in vectors("centre of 'new'", 3) if pair[0] is not None]}),
+    "unbalance": Right(Model.unbalance, {
+        "node": "a", "mass_times_radius": 0.1, "phase": 0.3, "axis": X}, {
+            "node": nodes(foreign, lacks_place, lacks_turn),
+            "mass_times_radius": positive("unbalance at 'a': mass_times_radius"),
+            "phase": are("unbalance at 'a': phase", *NO_NUMBER),
+            "axis": given(axis("unbalance")), "name": names("unbalance at a")}),
     "point_mass": Right(Model.point_mass, {"name": "new", "node": "a", "mass": 1.0}, {
         "name": are("name of a body", *NO_NAME), "node": nodes(foreign, lacks_place),
         "mass": positive("mass of 'new'")}),
@@ -346,6 +352,8 @@ FLAT = {
     "planar torque": Right(Model.torque, {"node": "a", "direction": 1.0}, {
         "direction": are("torque on a.rotation", "1", None, True, 1j, NAN, (1.0, 2.0),
                          also=": give 1 finite number")}),
+    "planar unbalance": Right(Model.unbalance, {"node": "a", "mass_times_radius": 1.0}, {
+        "axis": have("unbalance at 'a': a model in a plane has no axis=", X, 1.0, "z")}),
     "planar body": Right(Model.rigid_body, {
         "name": "new", "node": "a", "mass": 1.0, "inertia": 1.0}, {
             "inertia": are("inertia of 'new'", *NO_NUMBER, -1.0, (1.0, 1.0, 1.0))}),
