@@ -3,6 +3,8 @@
 Motions that are prescribed, and positions that are fixed, are those of the changed model.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -56,13 +58,29 @@ def _drive_on(system, state, kinds, ends, besides, free, load):
         _drive(system, state, kinds[e], ends[e], besides[e], free, load)
 
 
+@compiled
+def _largest(system, state, free):
+    """The largest force of an element, on an accelerated inertia, or moment on one that turns."""
+    largest = 0.0
+    for k in range(state.g.size):
+        largest = max(largest, abs(state.g[k]))
+    for i in range(free):
+        largest = max(largest, abs(system.inertias[i] * state.a[i]))
+    for at in system.rotation_at:
+        for i in range(at, at + 3 if at < free else at):
+            largest = max(largest, system.inertias[i] * state.v[i] * state.v[i])
+    return largest
+
+
 @compiled(nogil=True)
-def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, second, found):
+def _residuals(system, state, rows, now, kinds, ends, besides, places, free, load, second, found,
+               forces):
     """Residuals of all events but the first; fixed and prescribed coordinates are the model's own.
 
     `now` are states of this model, as many as are asked for: motion of the unknowns is that of the
     run. The load of a power port may be changed, `load` being the port, the change, and the change
-    in look aheads. `second` are numbers of second residuals, of index 2, or `NOTHING`.
+    in look aheads. `second` are numbers of second residuals, of index 2, or `NOTHING`. `forces`
+    (1,) becomes the largest of which residuals are sums.
     """
     q, R, v, a, frames, frames_old = places
     by_rates, by_seconds, shifts, aheads, corrections, restarts = second
@@ -83,6 +101,7 @@ def _residuals(system, state, rows, now, kinds, ends, besides, places, free, loa
             return status
         for i in range(q, now.shape[1] if e < now.shape[0] else 0):
             now[e, i] = state.now[i]
+        forces[0] = max(forces[0], _largest(system, state, free))
         for i in range(free):
             found[e, i] = state.residual[i]
         if by_rates.size > 0 and kinds[e] == RESTART:
@@ -102,6 +121,14 @@ def port_values(system, state, port, ends, besides, found):
     for e in range(ends.size):
         set_loads_beside(system, state.frames, state.loads, ends[e], besides[e])
         found[e] = state.loads[3 * port]
+
+
+class Held(NamedTuple):
+    """Residuals of a model in the states of a run."""
+
+    residuals: NDArray      # (events, unknowns)
+    states: NDArray         # (events, recorded) of this model, or the first alone
+    forces: float           # largest of an element or of an inertia, of which residuals are sums
 
 
 class HeldResiduals:
@@ -125,11 +152,10 @@ class HeldResiduals:
         self.unknowns = self.free if course is None else course.unknowns
         self.products, self.kept = (None, 0) if course is None else (course.products, course.kept)
 
-    def of(self, made: Simulation, load: Load = NO_LOAD, states: bool = True
-           ) -> tuple[NDArray, NDArray]:
+    def of(self, made: Simulation, load: Load = NO_LOAD, states: bool = True) -> Held:
         """Residuals of all events, and the states of this model that they are of if asked for."""
         system, state, history = made.system, made.state, self.history
-        found = np.zeros((len(history.rows), self.unknowns + self.kept))
+        found, forces = np.zeros((len(history.rows), self.unknowns + self.kept)), np.zeros(1)
         now = history.rows[:len(history.rows) if states else 1].copy()
         if history.past is None:
             self._first(made, load, found[0])
@@ -142,12 +168,13 @@ class HeldResiduals:
             _drive_on(system, state, history.past.kinds, history.past.ends, history.past.besides,
                       self.free, load)
         status = _residuals(system, state, history.rows, now, history.kinds, history.ends,
-                            history.besides, self.places, self.free, load, self.second, found)
+                            history.besides, self.places, self.free, load, self.second,
+                            found, forces)
         if status != OK:
             raise InputError(f"a state cannot be evaluated: {REASONS[status]}")
         if states:
             self._follow(made, now[1:], found, 1, len(now))
-        return found, now
+        return Held(found, now, float(forces[0]))
 
     def _follow(self, made: Simulation, now: NDArray, found: NDArray, first: int, last: int
                 ) -> None:

@@ -19,7 +19,12 @@ class Column(NamedTuple):
     handle: Handle
     component: int
     label: str          # of the number
-    design: bool = False        # whether bodies are made anew
+    bodies: tuple[str, ...] = ()        # that are made anew
+
+    @property
+    def design(self) -> bool:
+        """Whether bodies are made anew."""
+        return bool(self.bodies)
 
 
 Parameter = str | Design
@@ -63,7 +68,7 @@ def _columns(model: Model, given: Parameter) -> list[Column]:
     if isinstance(given, Design):
         of = given.handle(model)
         return [Column(given.name, of, k, given.name if of.base.size == 1 else f"{given.name}[{k}]",
-                       True) for k in range(of.base.size)]
+                       tuple(given.bodies)) for k in range(of.base.size)]
     name, component = given, None
     owner, _, last = str(given).rpartition(".")
     if owner and (last in AXES or last.isdigit()):

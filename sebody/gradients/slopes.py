@@ -15,6 +15,7 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
@@ -25,6 +26,7 @@ from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
 from sebody.gradients.start_rates import fitted_rates
 from sebody.model.model import Model
+from sebody.reduction import ReducedBody
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import STEPS, WEIGHTS
 
@@ -32,7 +34,12 @@ LARGE, SHORT = 0.25, 1e-3       # steps of differences, relative to the size of 
 POLYNOMIAL = 1e-8               # differences over one and two steps that agree like this are exact
 SMOOTH = 1e-2                   # that agree worse are no differences of a smooth function
 NOISE = 1e-8                    # of values: velocities of the start have so much
+ROUNDED = 1e-13                 # of forces: what rounding may leave of residuals, which are sums
+EQUAL = 1e-2                    # frequencies closer than this may change places in such steps
 SOLVED = 1e-6                   # of velocities: difference of what is given from what is solved for
+# in words, by field of `Slope`
+ROUGH = {"residuals": "forces", "motion": "the positions at the start",
+         "rates": "the velocities at the start", "objectives": "what is differentiated"}
 
 
 class Slope(NamedTuple):
@@ -52,6 +59,7 @@ class Value(NamedTuple):
     motion: NDArray
     rates: NDArray
     objectives: NDArray
+    rounding: float         # of the residuals
 
 
 class Slopes:
@@ -94,7 +102,7 @@ class Slopes:
             self._check_given(column)
         try:
             values = [] if column.design else self._around(handle, component, LARGE * size)
-            if values and _agree(values, POLYNOMIAL):
+            if values and not _disagreeing(values, POLYNOMIAL):
                 return _slope(values, LARGE * size)
         except InputError:
             pass            # of small changes only
@@ -104,12 +112,26 @@ class Slopes:
             raise InputError(f"parameter {column.label}: the model cannot be changed by it alone, "
                              f"so there is no derivative: {error}") from error
 
-        if not _agree(values, SMOOTH, NOISE):
+        if rough := _disagreeing(values, SMOOTH, NOISE):
             raise InputError(f"parameter {column.label}: what the model has near its value is not "
-                             "smooth, as where frequencies of a body are equal and modes change "
-                             "places, so there is no derivative: keep more modes, or make the "
-                             "frequencies differ")
+                             f"smooth, so there is no derivative: {self._why(column, rough)}")
         return _slope(values, SHORT * size)
+
+    def _why(self, column: Column, rough: str) -> str:
+        """Why there is no derivative, as far as that is known, and what to do."""
+        made = [name for name in column.bodies if self.model.bodies[name].reduced.modes]
+        equal = {name: pair for name in made
+                 if (pair := _equal_frequencies(self.model.bodies[name].reduced))}
+        if equal:
+            name, (first, second) = next(iter(equal.items()))
+            return (f"frequencies {first:.5g} and {second:.5g} of body {name!r} are equal or "
+                    "nearly so, where modes change places: make the frequencies differ, or hold "
+                    "the modes, as sections(held_modes=True) does")
+        return (f"differences of {ROUGH[rough]} over 0.1 % and 0.2 % of its size disagree: "
+                + ("one of the modes of the bodies that are made anew may take the place of "
+                   "another: keep more modes, or hold them" if made else
+                   "the value may be where something begins or ends, as a contact or a limit: "
+                   "give one to a side of it"))
 
     def _check_given(self, column: Column) -> None:
         """Refuse a velocity that the run solved for: where it is given, the run is another one."""
@@ -162,7 +184,7 @@ class Slopes:
             for change in (size, -size):
                 made.state.now[:] = start
                 load = port, change * (not ahead), change * ahead
-                found.append(held.of(made, load, states=False)[0])
+                found.append(held.of(made, load, states=False).residuals)
             yield (found[0] - found[1]) / (2 * size), values.copy(), times
 
     def by_constants(self, place: int, rows: NDArray) -> NDArray:
@@ -178,12 +200,12 @@ class Slopes:
         made = self._made()
         start, own = made.state.now.copy(), slice(place, place + rows.shape[1])
         base = made.system.constants[own].copy()
-        still = self.held.of(made)[0]
+        still = self.held.of(made).residuals
         found = np.zeros((*still.shape, len(rows)))
         for k, row in enumerate(rows):
             made.state.now[:] = start
             made.system.constants[own] = base + row
-            found[..., k] = self.held.of(made)[0] - still
+            found[..., k] = self.held.of(made).residuals - still
         made.system.constants[own] = base
         return found
 
@@ -192,22 +214,37 @@ class Slopes:
             rates, motion = fitted_rates(made), self.held.turned(made.state)
         else:
             rates, motion = np.zeros(self.held.free), np.zeros(self.held.free)
-        found, now = self.held.of(made)
-        return Value(found, motion, rates, self.objectives(made, now[self.history.recorded]))
+        held = self.held.of(made)
+        return Value(held.residuals, motion, rates,
+                     self.objectives(made, held.states[self.history.recorded]),
+                     ROUNDED * held.forces)
 
 
-def _agree(values: list[Value], closely: float, noise: float = 0.0) -> bool:
-    """Whether differences over one and over two steps are the same, but for noise of the values."""
-    for name in ("residuals", "motion", "rates", "objectives"):
+def _disagreeing(values: list[Value], closely: float, noise: float = 0.0) -> str:
+    """Name of what has other differences over one step than over two, but for noise, or nothing.
+
+    Residuals of a parameter that moves nothing, as the mass of a pendulum, are rounding.
+    """
+    for name in Slope._fields:
         f = [getattr(value, name) for value in values]
         one, two = (f[0] - f[1]) / 2, (f[2] - f[3]) / 4
         size = np.maximum(np.abs(one), np.abs(two)).max(initial=0.0)
-        if np.abs(one - two).max(initial=0.0) > closely * size + noise * np.abs(
+        rounding = values[0].rounding if name == "residuals" else 0.0
+        if np.abs(one - two).max(initial=0.0) > closely * size + rounding + noise * np.abs(
                 f[0]).max(initial=0.0):
-            return False
-    return True
+            return name
+    return ""
+
+
+def _equal_frequencies(body: ReducedBody) -> tuple[float, float] | None:
+    """Two neighbouring frequencies of internal modes that are equal or nearly so."""
+    own = slice(len(body.mass) - body.modes, None)
+    squares = eigh(body.stiffness[own, own], body.mass[own, own], eigvals_only=True)
+    omega = np.sqrt(np.maximum(squares, 0.0))
+    close = np.flatnonzero(np.diff(omega) <= EQUAL * omega[1:])
+    return (float(omega[close[0]]), float(omega[close[0] + 1])) if len(close) else None
 
 
 def _slope(values: list[Value], step: float) -> Slope:
     return Slope(*(sum(w / step * getattr(value, name) for w, value in zip(
-        WEIGHTS, values, strict=True)) for name in Value._fields))
+        WEIGHTS, values, strict=True)) for name in Slope._fields))
