@@ -19,11 +19,13 @@ from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
+from sebody.model.model import Model
 from sebody.model.parts import Element, Node
 from sebody.pictures.frequency_pictures import save_response
 from sebody.results.naming import component_names
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
+from sebody.small_motion.given_state import state_of
 from sebody.small_motion.linearization import small_motion, warn_of_spin
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.small_motion.rotation.azimuths import steady
@@ -80,15 +82,15 @@ class FrequencyResponse:
         return save_response(path, self.load, self.omega, self.answers)
 
 
-def frequency_response(run: Simulation | Result, load: str, quantities: str | Iterable[str],
+def frequency_response(run: Simulation | Result | Model, load: str, quantities: str | Iterable[str],
                        omega: ArrayLike, spin: ArrayLike | None = None, frame: str = "auto",
                        hub: Node | str | None = None) -> FrequencyResponse:
     """Response of quantities to a load of harmonic amplitude, about the state of a run.
 
     Parameters
     ----------
-    run : Simulation or Result
-        At rest or in steady rotation, as `equilibrium` leaves it.
+    run : Simulation, Result or Model
+        At rest or in steady rotation, as `equilibrium` leaves it; of a model, the state is that.
     load : str
         Name of a force, torque or mode force of the model; its amplitude may be 0 there.
     quantities : str or iterable of str
@@ -114,8 +116,7 @@ def frequency_response(run: Simulation | Result, load: str, quantities: str | It
         No such load or quantity, a state that cannot be evaluated, or a frequency at which the
         response is infinite.
     """
-    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
-                    "of an equilibrium")
+    run = state_of(run, spin)
     names = [quantities] if isinstance(quantities, str) else inputs.items(
         quantities, "quantities", "give names of quantities")
     omega = inputs.vector(omega, "omega")

@@ -15,6 +15,7 @@ from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
 from sebody.basics.tabular import brief, counted
+from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.reduction.massless import Condensed, condensed
 from sebody.results.contact_states import states
@@ -27,6 +28,7 @@ from sebody.runs.state_derivatives import derivative
 from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.small_motion import mode_tables
 from sebody.small_motion.eigenvalues import NEGLIGIBLE, Eigenvalues, eigenvalues, undamped
+from sebody.small_motion.given_state import state_of
 from sebody.small_motion.pressed_friction import without_multipliers
 from sebody.small_motion.rotation.periodic import exponents
 from sebody.small_motion.rotation.views import View, view
@@ -83,12 +85,14 @@ class Linearization(NamedTuple):
     __repr__ = brief
 
 
-def linearize(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = "auto",
+def linearize(run: Simulation | Result | Model, spin: ArrayLike | None = None, frame: str = "auto",
               hub: Node | str | None = None) -> Linearization:
     """Matrices of small motion about the state a run, or an equilibrium, has reached.
 
     Parameters
     ----------
+    run : Simulation, Result or Model
+        See `modes`.
     spin : (3,) array_like or float, optional
         Angular velocity [1/time] of a steady rotation of what turns.
         Without one, the matrices of a moving state are those of the instant.
@@ -101,8 +105,7 @@ def linearize(run: Simulation | Result, spin: ArrayLike | None = None, frame: st
         A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
         constant.
     """
-    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
-                    "of an equilibrium")
+    run = state_of(run, spin)
     return linearized(run, view(run, spin, frame, hub))
 
 
@@ -170,8 +173,15 @@ class Vibrations(NamedTuple):
         return self.of_names.of(name, self.shapes)
 
 
-def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations:
+def vibrations(run: Simulation | Result | Model, count: int | None = None) -> Vibrations:
     """Undamped vibrations about the state of a simulation at rest, constraints included.
+
+    Parameters
+    ----------
+    run : Simulation, Result or Model
+        At rest. Of a model, the state is that of its `equilibrium`.
+    count : int, optional
+        Lowest vibrations to tell; all by default.
 
     Raises
     ------
@@ -180,7 +190,7 @@ def vibrations(run: Simulation | Result, count: int | None = None) -> Vibrations
     """
     if count is not None:
         count = inputs.integer(count, "count", least=1)
-    inputs.instance(run, "run", Simulation | Result, "give a Simulation or a Result")
+    run = state_of(run)
     if np.abs(run.state.v).max() > 0:
         raise InputError("the state is not at rest: vibrations() needs a state at rest, use modes()"
                          " for moving states")
@@ -279,7 +289,7 @@ class Modes(NamedTuple):
         return self.values.real
 
 
-def modes(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = "auto",
+def modes(run: Simulation | Result | Model, spin: ArrayLike | None = None, frame: str = "auto",
           hub: Node | str | None = None) -> Modes:
     """Eigenvalues and shapes about a state, from the exact tangents; see `linearize`.
 
@@ -290,7 +300,8 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = 
 
     Parameters
     ----------
-    run : Simulation or Result
+    run : Simulation, Result or Model
+        Of a model, the state is that of its `equilibrium`, in the steady rotation if there is one.
     spin : (3,) array_like or float, optional
         Angular velocity of a steady rotation [1/time]. What the model lets turn freely about its
         direction turns, with all that bodies, links, welds or gears tie to it; the rest stands.
@@ -312,8 +323,7 @@ def modes(run: Simulation | Result, spin: ArrayLike | None = None, frame: str = 
         A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
         constant.
     """
-    inputs.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
-                    "of an equilibrium")
+    run = state_of(run, spin)
     found = modes_in(run, view(run, spin, frame, hub))
     if spin is None:
         warn_of_spin(run, np.abs(found.values), "modes")

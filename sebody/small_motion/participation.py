@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from sebody.assembly.numbering import coordinates
 from sebody.basics import tabular
+from sebody.model.model import Model
 from sebody.results.naming import AXES
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import motion
 from sebody.runs.simulation import Simulation
 from sebody.runs.state_derivatives import weighted
+from sebody.small_motion.given_state import state_of
 from sebody.small_motion.linearization import vibrations
 
 
@@ -47,12 +49,12 @@ class EffectiveMasses(NamedTuple):
         return f"{len(self.omega)} vibrations and the mass they move", heads, rows
 
 
-def effective_masses(run: Simulation | Result, count: int | None = None) -> EffectiveMasses:
+def effective_masses(run: Simulation | Result | Model, count: int | None = None) -> EffectiveMasses:
     """Participation factors and effective masses of vibrations, along the axes of space.
 
     Parameters
     ----------
-    run : Simulation or Result
+    run : Simulation, Result or Model
         At rest, as for `vibrations`.
     count : int, optional
         Lowest vibrations to tell; all by default.
@@ -62,6 +64,7 @@ def effective_masses(run: Simulation | Result, count: int | None = None) -> Effe
     InputError
         As `vibrations`.
     """
+    run = state_of(run)
     found = vibrations(run, count)
     d, numbering = run.model.dimension, run.numbering
     carried = np.zeros((numbering.total, d))

@@ -22,9 +22,11 @@ from scipy.linalg import eig, matrix_balance, schur
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
+from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
+from sebody.small_motion.given_state import state_of
 from sebody.small_motion.state_space import StateSpace, state_space
 
 POINTS = 10         # of a panel: errors of 4e-12
@@ -59,15 +61,15 @@ class RandomResponse(NamedTuple):
                               for name, value in self.rms.items()]
 
 
-def random_response(run: Simulation | Result, psd: Mapping[str, ArrayLike],
+def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLike],
                     quantities: str | Iterable[str], spin: ArrayLike | None = None,
                     frame: str = "auto", hub: Node | str | None = None) -> RandomResponse:
     """Response of quantities to stationary random loads and base accelerations.
 
     Parameters
     ----------
-    run : Simulation or Result
-        At rest or in steady rotation, as `equilibrium` leaves it.
+    run : Simulation, Result or Model
+        At rest or in steady rotation, as `equilibrium` leaves it; of a model, the state is that.
     psd : mapping of str to (rows, 2) array_like
         One-sided power spectral densities by the names of inputs, which are independent of each
         other. Rows are frequencies in cycles per unit of time (Hz where it is the second) and
@@ -97,6 +99,7 @@ def random_response(run: Simulation | Result, psd: Mapping[str, ArrayLike],
         psd, "psd", "give tables (frequency, density) by the names of inputs").items()}
     if not tables:
         raise inputs.refusal("psd", psd, "name at least one input")
+    run = state_of(run, spin)
     _refuse_crooked(run, quantities)
     system = state_space(run, list(tables), quantities, spin, frame, hub)
     rows = np.unique(np.concatenate([table[:, 0] for table in tables.values()]))
@@ -118,7 +121,7 @@ def _refuse_crooked(run: Simulation | Result, quantities: str | Iterable[str]) -
     """Refuse stresses that do not follow a small motion in proportion."""
     names = [quantities] if isinstance(quantities, str) else inputs.items(
         quantities, "quantities", "give names of quantities")
-    bodies = run.model.bodies if isinstance(run, Simulation | Result) else {}
+    bodies = run.model.bodies
     for name in filter(lambda one: isinstance(one, str), names):
         owner, _, inside = name.rpartition(".node")
         body = bodies.get(owner)

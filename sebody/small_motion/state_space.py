@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs as given
 from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief
+from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.results.naming import component_names
 from sebody.results.result import Result
@@ -28,6 +29,7 @@ from sebody.runs.rotating_frame import motion
 from sebody.runs.simulation import Simulation
 from sebody.small_motion import inputs_of_motion, realization
 from sebody.small_motion.constrained_motion import ConstrainedMotion
+from sebody.small_motion.given_state import state_of
 from sebody.small_motion.linearization import small_motion
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.small_motion.rotation.azimuths import steady
@@ -155,16 +157,16 @@ class StateSpace(NamedTuple):
         return control.ss(self.A, self.B, self.C, self.D, **names)
 
 
-def state_space(run: Simulation | Result, inputs: str | Iterable[str],
+def state_space(run: Simulation | Result | Model, inputs: str | Iterable[str],
                 outputs: str | Iterable[str], spin: ArrayLike | None = None, frame: str = "auto",
                 hub: Node | str | None = None) -> StateSpace:
     """Linear model between inputs and outputs about the state a run, or an equilibrium, reached.
 
     Parameters
     ----------
-    run : Simulation or Result
-        At rest or in steady rotation. Of a model that moves otherwise, the matrices are those of
-        the instant.
+    run : Simulation, Result or Model
+        At rest or in steady rotation; of a model, the state is its `equilibrium`. Of a run
+        that moves otherwise, the matrices are those of the instant.
     inputs : str or iterable of str
         Names of forces, torques, actuators, loads on bodies and modes, drives and prescribed
         motions, default names included. Of the last two the input is the acceleration, named
@@ -188,8 +190,7 @@ def state_space(run: Simulation | Result, inputs: str | Iterable[str],
     InputError
         No such input or output, a state that cannot be evaluated, or a motion without mass.
     """
-    given.instance(run, "run", Simulation | Result, "give a Simulation, or the Result of a run or "
-                   "of an equilibrium")
+    run = state_of(run, spin)
     names = _listed(inputs, "inputs", "name of an input")
     wanted = _listed(outputs, "outputs", "name of a quantity")
     refuse_unmoved(wanted, "linear model")

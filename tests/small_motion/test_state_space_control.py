@@ -209,5 +209,5 @@ def test_what_is_refused():
     system = state_space(Simulation(model, 0.01), "motor", "tip.position")
     with pytest.raises(InputError, match="order is 1: poles at zero and unstable ones alone have"):
         system.reduce(1)
-    with pytest.raises(InputError, match="give a Simulation, or the Result"):
-        state_space(model, "motor", "tip.position")
+    with pytest.raises(InputError, match="give a Simulation, the Result of"):
+        state_space("model", "motor", "tip.position")
