@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
-from warnings import WarningMessage, catch_warnings, simplefilter, warn
+from warnings import WarningMessage, catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.outputs import at_time
 from sebody.gradients.gradient import Differentiated, fitting, stacked
@@ -123,7 +124,7 @@ def calibrate(model: Model, h: float, measured: Mapping[str, ArrayLike],
         return fit.judged(found.x)
     finally:
         for one in fit.said:
-            warn(one.message, one.category, stacklevel=2)
+            warn(one.message, one.category)
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,13 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, cast
-from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
-from sebody.basics.errors import InputError, LimitWarning
+from sebody.basics.errors import InputError
+from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
@@ -177,7 +177,7 @@ def differentiate(model: Model, h: float, t_end: float, outputs: Mapping[str, Ou
     if growth > CHAOTIC:
         warn(f"a disturbance of this run grows {growth:.1g} times in its effect on the objectives: "
              "the motion is unstable or chaotic, and its derivatives hold in a range as small; "
-             "shorten the run, or take objectives over a shorter time", LimitWarning, stacklevel=3)
+             "shorten the run, or take objectives over a shorter time")
     return Gradient(one.whole.value, matrix, tuple(one.whole.labels),
                     tuple(c.label for c in columns), growth, time.perf_counter() - began,
                     segments.seconds, seconds)

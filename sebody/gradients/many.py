@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Event, Lock, Thread
 from typing import Literal, cast
-from warnings import catch_warnings, simplefilter, warn
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning, SimulationError
+from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.ensemble import Values
 from sebody.explore.ensembles.handles import given
@@ -142,7 +143,7 @@ def gradients(model: Model, h: float, t_end: float, objectives: Objectives,
     scheme = fitting(scheme, given_tolerance(tolerance))
     began = time.perf_counter()
     template = Simulation(model, h, scheme, tolerance=tolerance)
-    refuse_run(template, level=3)
+    refuse_run(template)
     Products.of(template)       # compiles what is missing, before threads do
     read = forms(template, outputs)
     labels = [label for name, one in outputs.items() for label in labels_of(
@@ -169,8 +170,7 @@ def _warn(many: Gradients) -> None:
     if len(chaotic):
         warn(f"a disturbance grows up to {many.growth[chaotic].max():.1g} times in its effect on "
              f"the objectives of {len(chaotic)} runs, such as run {chaotic[0]}: their motion is "
-             "unstable or chaotic, and its derivatives hold in a range as small; shorten the runs",
-             LimitWarning, stacklevel=3)
+             "unstable or chaotic, and its derivatives hold in a range as small; shorten the runs")
 
 
 class _Member:

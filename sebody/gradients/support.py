@@ -1,8 +1,8 @@
 """Which runs have exact gradients; all others are refused by name, with what to do instead."""
 
-from warnings import warn
 
-from sebody.basics.errors import InputError, LimitWarning
+from sebody.basics.errors import InputError
+from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import DENSE
@@ -46,7 +46,7 @@ def refuse_model(model: Model) -> None:
                              "or an Ensemble with values on both sides")
 
 
-def refuse_run(run: Simulation, level: int = 4) -> None:
+def refuse_run(run: Simulation) -> None:
     """Refuse runs whose steps are no functions of the state before.
 
     Warns of constraints of index 2, which are differentiated to the order of the scheme; `level`
@@ -89,7 +89,7 @@ def refuse_run(run: Simulation, level: int = 4) -> None:
              "that are held where motion is differentiated, so derivatives differ from those of "
              "the run by about the error of its steps: halve the step, or divide the tolerance by "
              "eight, to see by how much; fixed steps of generalized_alpha(index=3) have exact "
-             "derivatives", LimitWarning, stacklevel=level)
+             "derivatives")
 
 
 def refuse_laws(run: Simulation, what: str) -> None:

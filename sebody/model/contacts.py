@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from warnings import warn
-
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
-from sebody.basics.errors import InputError, LimitWarning
+from sebody.basics.errors import InputError
+from sebody.basics.warned import warn
 from sebody.contract.names import body_contact_kind
 from sebody.model.arguments import chosen_name, direction, dof_block, known, known_joint, vector
 from sebody.model.body_points import body_point, start_place
@@ -91,8 +90,7 @@ def warn_of_degrees(what: str, low: float, high: float) -> None:
     for word, limit in (("lower", low), ("upper", high)):
         if np.isfinite(limit) and abs(limit) > TURN:
             warn(f"{what}: {word} is {limit:g}, which is {abs(limit) / TURN:.3g} turns: angles are "
-                 f"in radians, {limit:g} degrees are {np.radians(limit):.6g}", LimitWarning,
-                 stacklevel=4)
+                 f"in radians, {limit:g} degrees are {np.radians(limit):.6g}")
 
 
 def checked_limits(what: str, low: float, high: float, start: float, play: bool = False) -> None:

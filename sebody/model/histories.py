@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from numbers import Number
 from typing import TypeAlias, TypeGuard
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
-from sebody.basics.errors import LimitWarning
+from sebody.basics.warned import warn
 from sebody.io.load_series import LoadSeries, Pieces
 from sebody.model.functions import compiled_history
 from sebody.model.history_rows import linear, table
@@ -133,10 +132,10 @@ def of_cubics(times: NDArray, coefficients: NDArray, last: float) -> TimeFunctio
     share = beyond.max() / max(np.ptp(rows), 1e-300)
     if share > BEYOND:
         k = np.unravel_index(np.argmax(beyond), beyond.shape)
-        warnings.warn(f"the spline through a table of {len(times)} rows leaves their range by "
-                      f"{100.0 * share:.2g} % of it, to {values[k]:.6g} at t = "
-                      f"{times[k[1]] + within[k]:.6g}: give more rows, rows (t, value, rate) by "
-                      "spline, or rest_to_rest", LimitWarning, stacklevel=4)
+        warn(f"the spline through a table of {len(times)} rows leaves their range by "
+             f"{100.0 * share:.2g} % of it, to {values[k]:.6g} at t = "
+             f"{times[k[1]] + within[k]:.6g}: give more rows, rows (t, value, rate) by "
+             "spline, or rest_to_rest")
     return TimeFunction(tuple(times.tolist()), (*map(tuple, coefficients[::-1].T.tolist()),
                                            (float(last),)))
 

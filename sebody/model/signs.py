@@ -1,8 +1,8 @@
 """The sign of ways, which version 0.2.0 has changed."""
 
-import warnings
 from weakref import WeakSet
 
+from sebody.basics.warned import warn
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Joint
 
@@ -22,4 +22,4 @@ def warn_of_sign(model: Mechanism, what: str, joint: Joint) -> None:
             f"the axis from {joint.to.name!r}, the sign of the joint's displacement; before, "
             "limits and drives of ways in prismatic and cylindrical joints and of drive_slide had "
             "the other sign")
-    warnings.warn(said, FutureWarning, stacklevel=4)        # of what calls a builder
+    warn(said, FutureWarning)

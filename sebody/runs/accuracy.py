@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import placed, rotational
 from sebody.basics import inputs
 from sebody.basics.errors import Interrupted, LimitWarning, SimulationError
+from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.model.extent import extent
 from sebody.model.model import Model
@@ -95,7 +96,7 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
         now.error, now.all_seconds = last.error, runs.seconds
         if _good_enough(estimates):
             for message in now.warnings:
-                warnings.warn(message, LimitWarning, stacklevel=3)
+                warn(message)
             return now
         if (divisors[-1] > RESOLVED and last.error > 1.0
                 and differences[-1] > HOPELESS * max(differences[-4:-1])):

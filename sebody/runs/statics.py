@@ -141,7 +141,7 @@ def _result(run: Simulation, path: Loading) -> Result:
     if stability.startswith("unstable"):
         since = f" ({'; '.join(path.notes)})" * bool(path.notes)
         run.watch.say("stability", f"the equilibrium is unstable{since}: a disturbance lets it "
-                      "move away" + "; unstable='leave' looks for a stable one" * path.keep, 4)
+                      "move away" + "; unstable='leave' looks for a stable one" * path.keep)
     run.watch.look(run.model, run.numbering, run.rows.all())
     results = run.result()
     results.stability = stability

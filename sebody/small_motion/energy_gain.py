@@ -28,8 +28,10 @@ from sebody.contract.layout import RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.model.model import Model
 from sebody.runs.simulation import Simulation, Standstill
+from sebody.small_motion.eigenvalues import EPS
 from sebody.small_motion.linearization import vibrations
 
+UNITS = 100.0           # in the last place of places: below it a motion is rounding
 SAMPLES = 400           # of the loads, besides their corners
 RIGID = 1e-6            # of the highest frequency, or of 1 / until: below it motions are rigid
 
@@ -95,10 +97,19 @@ def energy_gain(model: Model, until: float) -> EnergyGain:
     forces = np.array([_forces(run, t)[:n] @ shapes for t in times])
     energies = _energies(omega, rates, times, forces)
     energy = float(energies.sum())
-    if not energy > 0.0:
+    if not energy > _rounding(run, omega, shapes):
         raise InputError(f"nothing vibrates at t = {until:.6g}: give the model loads that act "
                          "before, or initial velocities, on something elastic")
     return EnergyGain(energy, float(np.sqrt(omega**2 @ energies / energy)))
+
+
+def _rounding(run: Simulation, omega: NDArray, shapes: NDArray) -> float:
+    """Energy of vibrations whose amplitudes are rounding of the places that nodes have."""
+    sized = np.flatnonzero(run.system.magnitude[:len(shapes)])      # positions and rotations
+    size, q = run.system.magnitude[sized], run.state.q[sized]
+    places = UNITS * EPS * max(1.0, np.abs(q / size).max(initial=0.0))
+    moved = np.abs(shapes[sized] / size[:, None]).max(axis=0, initial=1e-300)
+    return float(np.sum((omega * places / moved)**2 / 2.0))
 
 
 def _forces(run: Simulation, t: float) -> NDArray:

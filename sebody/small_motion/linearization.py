@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
@@ -13,8 +12,9 @@ from scipy.linalg import null_space
 
 from sebody.assembly.numbering import hidden_states
 from sebody.basics import inputs
-from sebody.basics.errors import InputError, LimitWarning
+from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief, counted
+from sebody.basics.warned import warn
 from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.reduction.massless import Condensed, condensed
@@ -234,11 +234,11 @@ def warn_of_spin(run: Simulation | Result, rates: NDArray, what: str) -> None:
     if spinning > SPINS * (lowest if np.isfinite(lowest) else 0.0):
         axes = (f"{fastest[0]:.6g}" if len(fastest) == 1 else
                 f"({', '.join(f'{part + 0.0:.6g}' for part in fastest)})")
-        warnings.warn(
+        warn(
             f"{what} of a state that rotates at up to {spinning:.6g} rad a unit of time, without "
             "spin=: the matrices are those of the instant, and nothing moves with their "
             f"eigenvalues for long. Give spin={axes}, the angular velocity of axes in which the "
-            "rotation is steady, or a state at rest", LimitWarning, stacklevel=3)
+            "rotation is steady, or a state at rest")
 
 
 class Modes(NamedTuple):

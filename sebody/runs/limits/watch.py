@@ -5,7 +5,6 @@ Only few of the recorded states are checked, after the compiled loop, which is n
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.assembly.motions import motions
 from sebody.basics import inputs
-from sebody.basics.errors import LimitWarning
+from sebody.basics.warned import warn
 from sebody.contract.layout import MOTION
 from sebody.engine.state import Scheme
 from sebody.model.mechanism import Mechanism
@@ -48,12 +47,12 @@ class Watch:
         self._groups: list[Motions] | None = None
         self._limits: dict[str, Limits] = {}
 
-    def say(self, key: str, message: str, level: int = 4) -> None:
-        """Warn, unless that was said before; `level` leads to the caller that is shown."""
+    def say(self, key: str, message: str) -> None:
+        """Warn, unless that was said before."""
         if key not in self._said:
             self._said.add(key)
             self.messages.append(message)
-            warnings.warn(message, LimitWarning, stacklevel=level)
+            warn(message)
 
     def say_of_bodies(self, found: Iterable[Finding]) -> None:
         """Give one warning of a kind: of the worst of the bodies, with the names of others."""
@@ -63,7 +62,7 @@ class Watch:
         for kind, findings in kinds.items():
             worst = max(findings, key=lambda finding: finding.excess)
             others = [f.body for f in findings if f.body != worst.body]
-            self.say(kind, worst.message + _also(others), 5)
+            self.say(kind, worst.message + _also(others))
 
     def start(self, bodies: dict[str, Superelement], scheme: Scheme, constrained: bool) -> None:
         """Give the warnings that are known before the first step."""
@@ -111,7 +110,7 @@ class Watch:
         for key, message in now.items():
             if key not in self._said:
                 self._said.add(key)
-                warnings.warn(message, LimitWarning, stacklevel=3)
+                warn(message)
         return *self.messages, *now.values()
 
 

@@ -1,7 +1,6 @@
 """References of a chart: nonlinear beams, extrapolated in the element length and in the step."""
 
 import hashlib
-import warnings
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from sebody.basics.errors import InputError
 from sebody.basics.files import replacing
 from sebody.basics.files.array_files import opened
 from sebody.basics.files.members import Member, Table
+from sebody.basics.warned import warn
 from sebody.kernels.loader import user_directory
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import simulate
@@ -52,8 +52,7 @@ def reference(scene: str, folder: Path | None = None) -> Reference:
         with replacing(path, "reference") as file:
             np.savez_compressed(file, values=computed.values, error=computed.error)
     except OSError as error:
-        warnings.warn(f"the reference is computed again next time: {error}", RuntimeWarning,
-                      stacklevel=2)
+        warn(f"the reference is computed again next time: {error}", RuntimeWarning)
     return computed
 
 
