@@ -5,8 +5,8 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, simulate
 from sebody.analysis import Ensemble
-from sebody.explore.ensembles.handles import handle
 from sebody.fem import Section, straight_beam
+from sebody.parameters.table import handle
 from sebody.reduction import craig_bampton
 
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()

@@ -1,5 +1,6 @@
 """Model descriptions of FMUs, of FMI 2.0 and 3.0."""
 
+import math
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
@@ -18,6 +19,8 @@ class Variable(NamedTuple):
     variability: str
     unit: str
     start: float | None
+    least: float = -math.inf
+    most: float = math.inf
 
 
 def variables(model: Prepared) -> list[Variable]:
@@ -29,7 +32,8 @@ def variables(model: Prepared) -> list[Variable]:
     listed = [Variable("time", 0, "independent", "continuous", "", None)]
     for one in model.inputs:
         kind = ("parameter", "tunable") if one.kind == PARAMETER else ("input", "continuous")
-        listed.append(Variable(one.name, len(listed), *kind, one.unit * named, one.start))
+        listed.append(Variable(one.name, len(listed), *kind, one.unit * named, one.start,
+                               one.least, one.most))
     for name, unit in zip(model.names, model.units, strict=True):
         listed.append(Variable(name, len(listed), "output", "continuous", unit * named, None))
     return listed
@@ -114,7 +118,9 @@ def _initial(one: Variable) -> dict[str, str]:
 
 def _start(one: Variable) -> dict[str, str]:
     unit = {"unit": one.unit} if one.unit else {}
-    return unit | ({} if one.start is None else {"start": _number(one.start)})
+    bounds = {key: _number(value) for key, value in (("min", one.least), ("max", one.most))
+              if math.isfinite(value)}
+    return unit | bounds | ({} if one.start is None else {"start": _number(one.start)})
 
 
 def _flag(value: bool) -> str:

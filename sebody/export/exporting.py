@@ -38,8 +38,8 @@ def export(model: Model, h: float, *, library: str | Path | None = None,
     fmu : path, optional
         File of an FMU, in place of a library.
     inputs : sequence of str
-        Actuators, loads, drives (their accelerations are set) and parameters: numbers of elements
-        such as ``"spring.k"``, ``"gravity.y"``, ``"loop.parameters.0"``.
+        Actuators, loads, drives (their accelerations are set) and parameters as of an `Ensemble`,
+        such as ``"spring.stiffness"``, ``"gravity.y"``, ``"loop.parameters.0"``.
     outputs : sequence of str
         Quantities as results name them; of vectors all components.
     name : str

@@ -6,24 +6,24 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from sebody.assembly.controller_rows import law_constants, law_counts
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
-from sebody.contract.layout import FIELD, Row
 from sebody.engine.actuator_inputs import VALUE
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.export.image import Image
-from sebody.kernels.loader import element_kernel
-from sebody.model.control_order import continuous, sampled
+from sebody.export.settings import Settings
+from sebody.model.control_order import continuous
 from sebody.model.histories import input_history
-from sebody.model.mechanism import Mechanism
 from sebody.model.model import Model
 from sebody.model.numbering import Numbering
 from sebody.model.parts import Element, Motion
 from sebody.model.time_functions import TimeFunction
 from sebody.model.variants.copying import copied
+from sebody.parameters.changes import MOTION
+from sebody.parameters.table import GRAVITY, handles, parameter
+from sebody.quantities.names import AXES
 
 INPUT, ACCELERATION, PARAMETER = range(3)       # kinds, as runtime.h counts them
 
@@ -33,11 +33,14 @@ class Input(NamedTuple):
 
     name: str
     kind: int
-    number: int         # of the input, or offset of the time at which an acceleration was set
+    number: int         # of the input or parameter, or offset of the time at which an
+                        # acceleration was set
     at: int             # offset of the value in the image
     factor: float       # by which the number there is multiplied
     start: float
     unit: str           # in words
+    least: float        # bounds of what can be set
+    most: float
 
 
 class Asked(NamedTuple):
@@ -67,7 +70,6 @@ def with_inputs(model: Model, names: Iterable[str]) -> tuple[Model, list[Asked]]
         name: drive for name, (_, drive) in joints.items()}
     motions = {motion.name: (block, motion) for block in made.dof_blocks()
                for motion in block.motions}
-    parameters = _parameters(made)
     driven = {out: one.name for one in continuous(made) for out in one.outputs}
     for name in names:
         inputs.name(name, "name of an input")
@@ -87,11 +89,11 @@ def with_inputs(model: Model, names: Iterable[str]) -> tuple[Model, list[Asked]]
             changed = motion._replace(time_function=_begun(name, motion.time_function))
             block.motions[block.motions.index(motion)] = changed
             asked.append(Asked(name, ACCELERATION, changed))
-        elif name in parameters:
-            asked.append(Asked(name, PARAMETER, None))
+        elif "." in name or name == GRAVITY:
+            asked += [Asked(one, PARAMETER, None) for one in _numbers(made, name)]
         else:
-            raise unknown("input", name, [*loads, *drives, *motions, *parameters],
-                          "the model has", "the model has no loads, drives or parameters")
+            raise unknown("input", name, [*loads, *drives, *motions, *handles(made)],
+                          "the model has")
     return made, asked
 
 
@@ -115,26 +117,33 @@ def _begun(name: str, own: TimeFunction | None) -> TimeFunction:
     return replace(TimeFunction(), pieces=((float(value), float(rate), 0.5 * float(second), 0.0),))
 
 
-def _parameters(model: Mechanism) -> dict[str, tuple]:
-    """Numbers that can be set, by name: what has them, and which of its numbers."""
-    parameters: dict[str, tuple] = {f"gravity.{axis}": ("gravity", k)
-                                    for k, axis in enumerate("xyz"[:model.dimension])}
-    for element in (*model.rigid_bodies.values(), *model.constraints, *model.loads):
-        if element.body is None:
-            parameters |= {f"{element.name}.{name}": (element, name)
-                           for name, value in element.constants.items() if np.ndim(value) == 0}
-    for name, controller in model.controllers.items():
-        parameters |= {f"{name}.parameters.{k}": (name, k)
-                       for k in range(controller.parameters.size)}
-    return parameters
+def _numbers(model: Model, name: str) -> list[str]:
+    """Names of the numbers of a parameter, which can be set while a model runs.
+
+    Raises
+    ------
+    InputError
+        A name that nothing has, whole bodies, or what runs begin with.
+    """
+    owner, handle, component = parameter(model, name)
+    if handle.whole:
+        raise InputError(f"input {name!r} has whole bodies for values: give stiffness or mass of "
+                         "the body, or export a model for each body")
+    if handle.touches == MOTION:
+        raise InputError(f"input {name!r} is what runs begin with, or where a motion leads, which "
+                         "cannot jump during a run: give start=, or the drive, whose acceleration "
+                         "is set")
+    if component is not None or handle.base.ndim == 0:
+        return [name]
+    return [f"{name}.{AXES[k] if owner == GRAVITY else k}" for k in range(handle.base.size)]
 
 
-def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: System,
-           state: State, image: Image) -> list[Input]:
+def placed(asked: list[Asked], numbering: Numbering, system: System, state: State, image: Image,
+           set_by: Settings) -> list[Input]:
     """Where the values of inputs are."""
-    parameters, places = _parameters(model), []
-    ports = list(numbering.memory.inputs)
+    places, ports = [], list(numbering.memory.inputs)
     for one in asked:
+        least, most = -np.inf, np.inf
         if one.kind == INPUT:
             port = numbering.memory.ports[one.name]
             place = numbering.memory.inputs[port] + VALUE
@@ -147,38 +156,12 @@ def placed(asked: list[Asked], model: Mechanism, numbering: Numbering, system: S
             number, factor = image.at(system.table_times, row), 2.0
             start = 2.0 * float(system.table_pieces[row, 2])
         else:
-            array, place = _place(parameters[one.name], model, numbering, system, state)
-            at, number, factor = image.at(array, place), 0, 1.0
-            start = float(array[place])
-        places.append(Input(one.name, one.kind, number, at, factor, start, _unit(one)))
+            number, factor = set_by.names.index(one.name), 1.0
+            at, start = image.at(set_by.values.values, number), float(set_by.values.values[number])
+            least, most = float(set_by.least[number]), float(set_by.most[number])
+        places.append(Input(one.name, one.kind, number, at, factor, start, _unit(one), least,
+                            most))
     return places
-
-
-def _place(parameter: tuple, model: Mechanism, numbering: Numbering, system: System,
-           state: State) -> tuple[np.ndarray, int]:
-    """The array that has a parameter, and where."""
-    owner, which = parameter
-    if owner == "gravity":
-        return state.coefficients, FIELD + which
-    if isinstance(owner, Element):
-        slices = Row("constants", element_kernel(owner.kind).CONSTANTS).slices({})
-        return system.constants, numbering.constants_at[owner] + slices[which].start
-    return _place_of_controller(owner, which, model, numbering, system)
-
-
-def _place_of_controller(owner: str, which: int, model: Mechanism, numbering: Numbering,
-                         system: System) -> tuple[np.ndarray, int]:
-    """As `_place`, of a parameter of a controller: a continuous one is an element."""
-    law = next((load for load in model.loads
-                if load.law is not None and load.law.controller == owner), None)
-    if law is not None:
-        counts = law_counts(law_constants(model, numbering, law))
-        slices = Row("constants", element_kernel(law.kind).CONSTANTS).slices(counts)
-        return system.constants, numbering.constants_at[law] + slices["parameters"].start + which
-    names = [one.name for one in sampled(model)]
-    before = names[:names.index(owner)]
-    return system.control.parameters, which + sum(
-        model.controllers[name].parameters.size for name in before)
 
 
 def _unit(one: Asked) -> str:

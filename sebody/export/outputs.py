@@ -9,27 +9,17 @@ from sebody.model.control_parts import Sensor
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering
 from sebody.quantities.expressions import Tape
-from sebody.quantities.inside import FENodes
 from sebody.quantities.reading import Reading, reading
 from sebody.quantities.symbols import NoTape
 from sebody.results import naming
-from sebody.results.nodal import MISES, STRESSES
 from sebody.results.tapes import States
 
 
 class Quantities:
-    """What compiled code evaluates of a model.
+    """What compiled code evaluates of a model."""
 
-    Parameters
-    ----------
-    gravity_set : bool
-        Whether gravity is an input: stresses follow from what it is here.
-    """
-
-    def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State,
-                 gravity_set: bool = False):
+    def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self._parts = model, numbering, system, state, state.now.copy()
-        self._gravity_set = gravity_set
         self._recording = States(*self._parts).recording
 
     def names(self, names: Iterable[str]) -> list[str]:
@@ -57,8 +47,6 @@ class Quantities:
         """
         states = States(*self._parts)
         for name, axes in [(name, "") for name in names] + [(s.quantity, s.axes) for s in sensors]:
-            if self._gravity_set:
-                self._refuse_stresses(name)
             try:
                 states.put(name, axes)
             except NoTape as error:
@@ -67,12 +55,6 @@ class Quantities:
                     "modes and FE nodes, angles of joints, forces and moments of joints, loads and "
                     "supports, stresses, works, energies, sensors and signals can") from error
         return states.reading()
-
-    def _refuse_stresses(self, name: str) -> None:
-        owner, _, quantity = naming.split(self._recording, name)[0].rpartition(".")
-        if quantity in (*STRESSES, MISES) and owner in FENodes(self._recording):
-            raise InputError(f"output {name!r} follows from gravity, which is an input here: "
-                             "leave one of them out")
 
 
 def no_outputs() -> Reading:

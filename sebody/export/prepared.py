@@ -25,6 +25,7 @@ from sebody.export.image import Image, members
 from sebody.export.interface import PARAMETER, Input, placed, with_inputs
 from sebody.export.linking import Part
 from sebody.export.outputs import Quantities
+from sebody.export.settings import settings
 from sebody.kernels.loader import element_kernel_name
 from sebody.model.control_order import sampled
 from sebody.model.model import Model
@@ -66,6 +67,8 @@ class Prepared:
         These, then what sensors measure that the loop cannot read.
     sensors : list of (int, Sensor)
         These sensors and their numbers.
+    settings : Settings
+        What parameters set.
     image : Image
     kernels : list of str
     called : list of str
@@ -88,23 +91,26 @@ class Prepared:
         if any(one.name.rpartition(".parameters.")[0] in called_at_samples for one in asked):
             self._ask_for_first_samples()
         self.system = _with_spare_corner(self.run.system)
-        quantities = Quantities(made, self._numbering, self.run.system, self.run.state,
-                                any(one.name.startswith("gravity.") for one in asked))
+        quantities = Quantities(made, self._numbering, self.run.system, self.run.state)
         self.names = quantities.names(outputs_of)
         if len(set(self.names)) < len(self.names):
             twice = next(one for one in self.names if self.names.count(one) > 1)
             raise InputError(f"output {twice!r} is given twice: leave one out")
         self.sensors = [(k, sensor) for k, sensor in enumerate(self._numbering.memory.sensors)
                         if self.system.control.sensors[k, OUTPUT] == 0]
-        self.outputs: Reading = quantities.made(self.names, [s for _, s in self.sensors])
+        sensors = [s for _, s in self.sensors]
+        self.outputs: Reading = quantities.made(self.names, sensors)
+        self.settings = settings(
+            self.run, self.outputs, [one.name for one in asked if one.kind == PARAMETER],
+            lambda *parts: Quantities(made, *parts).made(self.names, sensors))
         units = parsed_units(made.units)
         self.units = [unit(one, units) for one in self.names]
         self.exchanges = Exchanges.of(self._numbering.free, self.system.rows.size)
-        self.image = self._image([one.kind for one in asked])
+        self.image = self._image()
         self.inputs: list[Input] = [
             one._replace(unit=units.of(one.unit) if units else one.unit)
-            for one in placed(asked, made, self._numbering, self.system, self.run.state,
-                              self.image)]
+            for one in placed(asked, self._numbering, self.system, self.run.state, self.image,
+                              self.settings)]
         self._find_calls()
 
     @property
@@ -122,20 +128,19 @@ class Prepared:
         state.frames_old[bodies:] = state.frames[bodies:]
         self.run.sampling.begin()
 
-    def _image(self, kinds: list[int]) -> Image:
+    def _image(self) -> Image:
         system, state = self.system, self.run.state
         outputs = self.outputs
         changing = [*members(state), outputs.values, outputs.numbers, outputs.row,
                     outputs.loads, outputs.sums, outputs.moved, outputs.residues,
                     outputs.frames, outputs.work, system.corners, system.jumps,
-                    system.table_times, system.table_pieces, system.control.parameters]
-        changing += [system.constants] * (PARAMETER in kinds)
-        changing += members(self.exchanges)
+                    system.table_times, system.table_pieces, *self.settings.arrays,
+                    *members(self.settings.values), *members(self.exchanges)]
         state.work[:] = 0.0
         if state.control.wanted == EVALUATED:       # so matrices are made before they are read
             for matrix in (state.J, state.matrix, state.inverse):
                 matrix[...] = 0.0
-        return Image([system, state, self.outputs, self.exchanges], changing,
+        return Image([system, state, self.outputs, self.exchanges, self.settings.values], changing,
                      [state.work, *members(self.exchanges)])
 
     def _find_calls(self) -> None:

@@ -41,7 +41,9 @@ def _numbers(model: Prepared, record: Record) -> dict[str, int]:
         "AT_FACTORS_VALID": image.at(state.spare, kept_factors.VALID), "KEEPS": state.spare.size,
         "DERIVATIVES": int(model.differentiable), "RECORD_PARTS": record.at.size,
         "DENSE": int(run.dense), "ASKED": ASKED, "EVALUATED": EVALUATED, "ROOM": sparse_lu.ROOM,
-        "AT_KIND": image.at(model.exchanges.kind), "ADAPTIVE": int(state.control.adaptive),
+        "AT_SETTINGS": image.at(model.settings.values.values),
+        "SETTINGS": len(model.settings.places), "AT_KIND": image.at(model.exchanges.kind),
+        "ADAPTIVE": int(state.control.adaptive),
         "CORNERS": system.corners.size - 1, "TASKS": system.control.periods.size,
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
@@ -75,6 +77,14 @@ def _arrays(model: Prepared, record: Record) -> list[str]:
         _array("int64_t", "INPUT_NUMBER", [one.number for one in model.inputs]),
         _array("int64_t", "INPUT_AT", [one.at for one in model.inputs]),
         _array("double", "INPUT_FACTOR", [_float(one.factor) for one in model.inputs]),
+        _array("double", "INPUT_LEAST", [_float(one.least) for one in model.inputs]),
+        _array("double", "INPUT_MOST", [_float(one.most) for one in model.inputs]),
+        _array("char *const", "INPUT_NAME", [quoted(one.name) for one in model.inputs]),
+        _array("int64_t", "SETTING_AT", [model.image.at(*one) for one in model.settings.places]),
+        _array("double", "SETTING_OFFSET", [_float(x) for x in model.settings.offsets]),
+        _array("int64_t", "SETTING_BEGINS", model.settings.slopes.indptr.tolist()),
+        _array("int64_t", "SETTING_BY", model.settings.slopes.indices.tolist()),
+        _array("double", "SETTING_SLOPE", [_float(x) for x in model.settings.slopes.data]),
         _array("char *const", "REASON", [quoted(REASONS.get(k, "a step failed"))
                                          for k in range(max(REASONS) + 1)])]
 
@@ -91,7 +101,7 @@ def _number(fields: np.dtype, name: str) -> int:
 
 
 def _float(value: float) -> str:
-    return float(value).hex()
+    return float(value).hex() if np.isfinite(value) else "INFINITY" if value > 0 else "-INFINITY"
 
 
 def _words(name: str, words: list[int]) -> str:

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.changes import whole_body
 from sebody.fem.beam import section_axes
 from sebody.fem.section import Section, StiffnessSection
 from sebody.gradients.beam_stresses import ConstantRows, StressedBeam
@@ -22,6 +21,7 @@ from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement
 from sebody.model.variants.copying import copied
+from sebody.parameters.changes import whole_body
 from sebody.runs.steps import whole_steps
 
 OVERSTEPPED = 1e-3  # of the range of heights: how far beyond a bound a search may go

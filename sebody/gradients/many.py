@@ -17,7 +17,6 @@ from sebody.basics.errors import InputError, LimitWarning, SimulationError
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.ensemble import Values
-from sebody.explore.ensembles.handles import given
 from sebody.explore.ensembles.member import forms
 from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.work import INTERRUPTED, LOOK, processors
@@ -29,6 +28,7 @@ from sebody.gradients.products import Products
 from sebody.gradients.support import refuse_model, refuse_run
 from sebody.model.model import Model
 from sebody.model.variants.copying import copied
+from sebody.parameters.table import checked_values
 from sebody.runs.failures import KEPT
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
@@ -132,12 +132,11 @@ def gradients(model: Model, h: float, t_end: float, objectives: Objectives,
     inputs.instance(model, "model", Model, "give a sebody.Model")
     model = cast(Model, copied(model))
     threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
-    found, runs = given(model, values)
-    for name, handle in found.items():
-        if handle.whole:
+    found, rows, runs = checked_values(model, values)
+    for name, one in found.items():
+        if one.handle.whole:
             raise InputError(f"values of {name!r} are whole bodies: give numbers, such as factors "
                              "of its stiffness and mass")
-    rows = {name: handle.checked(name, values[name]) for name, handle in found.items()}
     columns = columns_of(model, parameters)
     refuse_model(model)
     scheme = fitting(scheme, given_tolerance(tolerance))
@@ -152,10 +151,10 @@ def gradients(model: Model, h: float, t_end: float, objectives: Objectives,
     many = Gradients(np.full(shape, np.nan), np.full((*shape, len(columns)), np.nan),
                      tuple(labels), tuple(c.label for c in columns), np.full(runs, np.nan))
 
-    def one(member: _Member, run: int) -> Gradient:
+    def of_run(member: _Member, run: int) -> Gradient:
         return member.differentiated({name: own[run] for name, own in rows.items()}, h, t_end,
                                      outputs, mode, scheme, tolerance)
-    work = _Work(many, one, lambda: _Member(model, list(rows), parameters))
+    work = _Work(many, of_run, lambda: _Member(model, list(rows), parameters))
     with catch_warnings(), showing(progress) as show:
         simplefilter("ignore", LimitWarning)    # of single runs
         work.go(min(threads, max(runs, 1)), show)
@@ -178,7 +177,7 @@ class _Member:
 
     def __init__(self, model: Model, names: list[str], parameters: Sequence[Parameter]):
         self.model = cast(Model, copied(model))
-        own = columns_of(self.model, names) if names else []
+        own = columns_of(self.model, names)
         places = {(c.name, c.component) for c in own}
         others = [name for name in parameters
                   if not places >= {(c.name, c.component)
@@ -192,9 +191,8 @@ class _Member:
                        tolerance: Tolerance | None) -> Gradient:
         """The gradient of the model with these values."""
         x = self.point.base.copy()
-        for k, column in enumerate(self.point.columns):
-            if column.name in values:
-                x[k] = np.ravel(values[column.name])[column.component]
+        own = np.concatenate([np.ravel(one) for one in values.values()])
+        x[:len(own)] = own      # these columns come first
         with self.point.at(x) as columns:
             return differentiate(self.model, h, t_end, outputs, [columns[k] for k in self.columns],
                                  mode, scheme, tolerance)

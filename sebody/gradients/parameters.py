@@ -5,11 +5,10 @@ from typing import NamedTuple
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.explore.ensembles.changes import Handle
-from sebody.explore.ensembles.handles import handle
 from sebody.gradients.designs import Design
 from sebody.model.model import Model
-from sebody.quantities.names import AXES
+from sebody.parameters.changes import Handle
+from sebody.parameters.table import parameter
 
 
 class Column(NamedTuple):
@@ -69,19 +68,11 @@ def _columns(model: Model, given: Parameter) -> list[Column]:
         of = given.handle(model)
         return [Column(given.name, of, k, given.name if of.base.size == 1 else f"{given.name}[{k}]",
                        tuple(given.bodies)) for k in range(of.base.size)]
-    name, component = given, None
-    owner, _, last = str(given).rpartition(".")
-    if owner and (last in AXES or last.isdigit()):
-        name, component = owner, AXES.index(last) if last in AXES else int(last)
-    of = handle(model, name)
+    name, of, component = parameter(model, given)
     if of.whole:
         raise InputError(f"parameter {given!r} has whole bodies for values, which have no "
                          "derivative: give stiffness or mass of the body, or a Design")
     if component is None:
         return [Column(name, of, k, name if of.base.ndim == 0 else f"{name}[{k}]")
                 for k in range(of.base.size)]
-    if of.base.ndim == 0 or component >= of.base.size:
-        raise InputError(f"parameter {given!r}: {name} has "
-                         + ("one number" if of.base.ndim == 0 else f"{of.base.size} numbers")
-                         + f", so none is called {last!r}: give {name!r}")
     return [Column(name, of, component, str(given))]

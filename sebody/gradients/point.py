@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.explore.ensembles.changes import Handle
-from sebody.explore.ensembles.handles import refuse_values
 from sebody.gradients.parameters import Column, Parameter, columns_of
 from sebody.model.model import Model
+from sebody.parameters.changes import Handle
+from sebody.parameters.table import refuse_values
 
 
 class Point:

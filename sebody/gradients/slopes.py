@@ -19,13 +19,13 @@ from scipy.linalg import eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
-from sebody.explore.ensembles.changes import Handle
 from sebody.gradients.course import Course
 from sebody.gradients.held_residuals import HeldResiduals, port_values
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
 from sebody.gradients.start_rates import fitted_rates
 from sebody.model.model import Model
+from sebody.parameters.changes import Handle
 from sebody.reduction import ReducedBody
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import STEPS, WEIGHTS

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 from sebody.analysis import equilibrium, linearize
 from sebody.assembly.body_axes import ROUNDING, without_rounding
 from sebody.assembly.body_constants import superelement_constants
-from sebody.explore.ensembles.handles import handle
 from sebody.fem import rectangle
 from sebody.model.model import Model
+from sebody.parameters.table import handle
 
 SECTION = rectangle(6.0, 4.0, youngs_modulus=2.1e5, poisson_ratio=0.3, density=7.85e-9)
 

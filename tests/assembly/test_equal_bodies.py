@@ -13,9 +13,9 @@ from sebody.compiler.choice import why_no_lanes
 from sebody.contract.equal_row import OWN
 from sebody.contract.layout import ENERGIES, ENERGY, HALF_TURN, HEADER, RESIDUAL, TANGENT
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.handles import handle
 from sebody.fem import planar_beam
 from sebody.kernels.abi import Arguments
+from sebody.parameters.table import handle
 from sebody.reduction import craig_bampton
 from sebody.results.audit import momentum_defect
 from sebody.runs.fingerprint import fingerprint

@@ -19,7 +19,7 @@ import numpy as np
 from sebody.analysis import Ensemble, final, maximum
 from sebody.catalogue import builder
 from sebody.explore.ensembles import choice, ensemble
-from sebody.explore.ensembles.handles import handle
+from sebody.parameters.table import handle
 
 STEPS = 300
 SCENES = {      # name of a scene, options

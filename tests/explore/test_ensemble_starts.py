@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from sebody import Model, Simulation, generalized_alpha, harmonic, ramp, simulate
 from sebody.analysis import Ensemble, final
 from sebody.control import pid
-from sebody.explore.ensembles.handles import handle
+from sebody.parameters.table import handle
 
 H, T_END = 2e-3, 0.03
 

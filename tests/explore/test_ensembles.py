@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Simulation
 from sebody.analysis import Ensemble, at_time, final, integral, maximum, minimum, rms
 from sebody.explore.ensembles import member
-from sebody.explore.ensembles.handles import handle
 from sebody.explore.ensembles.start_values import Image
 from sebody.fem import Section, straight_beam
+from sebody.parameters.table import handle
 from sebody.reduction import craig_bampton
 from sebody.reduction.scaling import scaled
 

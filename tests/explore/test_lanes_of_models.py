@@ -11,8 +11,8 @@ from sebody.compiler.choice import way
 from sebody.control import pid
 from sebody.explore.ensembles import ensemble
 from sebody.explore.ensembles.choice import matrices_at_once
-from sebody.explore.ensembles.handles import handle
 from sebody.fem import Section, straight_beam
+from sebody.parameters.table import handle
 from sebody.reduction import craig_bampton, reduce
 
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()

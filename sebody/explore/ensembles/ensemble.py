@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,9 +13,7 @@ from numpy.typing import ArrayLike
 from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.changes import Handle
 from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
-from sebody.explore.ensembles.handles import given, handles, refused
 from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.outputs import Output, outputs_of
@@ -24,6 +22,8 @@ from sebody.explore.ensembles.work import Work, processors
 from sebody.model.model import Model
 from sebody.model.summary import summary
 from sebody.model.variants.copying import copied
+from sebody.parameters.changes import Handle
+from sebody.parameters.table import PLACES, given, handles, refused
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.fingerprint import whole
@@ -32,7 +32,6 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
 from sebody.runs.user_faults import refuse_changed
 
-PLACING = ".position", ".rotation"      # parameters that move where runs begin
 Values = ArrayLike | Sequence[ReducedBody]
 
 
@@ -87,7 +86,7 @@ class Ensemble:
 
     @property
     def parameters(self) -> list[str]:
-        """Names of all that can be varied; see `sebody.explore.ensembles.handles`."""
+        """Names of all that can be varied; see `sebody.parameters.table`."""
         return list(handles(self.model))
 
     def run(self, parameters: Mapping[str, Values], t_end: float,
@@ -103,8 +102,8 @@ class Ensemble:
         Parameters
         ----------
         parameters : mapping
-            Values by name: the first axis of each array counts the runs. Without any the model is
-            run once, as it is.
+            Values by name: the first axis of each array counts the runs. ``gravity.y`` is one
+            number of a parameter. Without any the model is run once, as it is.
         t_end : float
             End of all runs [time].
         outputs : mapping
@@ -148,14 +147,13 @@ class Ensemble:
         """Some runs of `of` in all."""
         refuse_changed(self.model)
         threads = inputs.integer(processors() if threads is None else threads, "threads", least=1)
-        found, runs, last, kept = self._checked(parameters, t_end, outputs)
+        found, values, runs, last, kept = self._checked(parameters, t_end, outputs)
         read = forms(self._template, kept)
-        values = {name: handle.checked(name, parameters[name]) for name, handle in found.items()}
         outcome = self._empty(kept, read, runs, last)
         with self._lock:
             outcome.failures |= refused(self.model, found, values, runs)
         began = time.perf_counter()
-        image = self._image(found)
+        image = self._image(tuple(parameters), found)
         in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)
                     and can_be_together(image))
         work = Work(self._template, image, values, kept, read, last, outcome, self._lock, in_lanes)
@@ -178,21 +176,20 @@ class Ensemble:
 
     def _checked(self, parameters: Mapping[str, Values], t_end: float,
                  outputs: Mapping[str, Output | str]
-                 ) -> tuple[dict[str, Handle], int, int, dict[str, Output]]:
-        """Handles, number of runs, last step, outputs."""
+                 ) -> tuple[dict[str, Handle], dict[str, Any], int, int, dict[str, Output]]:
+        """Handles, values, number of runs, last step, outputs."""
         parameters = inputs.mapping(parameters, "parameters",
                                     "give a dict of names and arrays of values")
-        found, runs = given(self.model, parameters) if parameters else ({}, 1)
-        if placing := [name for name in found if self._template.begun and name.endswith(PLACING)]:
+        found, values, runs = given(self.model, parameters) if parameters else ({}, {}, 1)
+        if placing := [name for name in found if self._template.begun and name.endswith(PLACES)]:
             raise InputError(f"{placing[0]} cannot be varied: all runs begin at the start that was "
                              "given; leave it out, or build an ensemble without a start")
         last = whole_steps(inputs.number(t_end, "t_end", above=0), self.h)
-        return found, runs, last, outputs_of(outputs, last * self.h)
+        return found, values, runs, last, outputs_of(outputs, last * self.h)
 
-    def _image(self, found: dict[str, Handle]) -> Image:
-        """What runs begin with that these parameters vary in."""
+    def _image(self, key: tuple[str, ...], found: dict[str, Handle]) -> Image:
+        """What runs begin with that these parameters vary in, by the names that were given."""
         with self._lock:
-            key = tuple(found)
             if key not in self._images:
                 self._images[key] = Image(self._template, found)
             return self._images[key]

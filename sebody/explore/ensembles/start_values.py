@@ -1,9 +1,8 @@
 """The numbers a run begins with, as functions of its parameters.
 
-Many parameters change some of the numbers in a model's arrays, and each of these linearly: a force
-its direction, a stiffness the entries of a matrix. Which ones, and by how much, is found by
-building the model with three values of the parameter. Runs then begin with a copy of all numbers
-and additions to a few. Parameters of another kind have the model built anew for each of their runs.
+Many parameters change some of the numbers in a model's arrays, and each of these linearly. Runs
+then begin with a copy of all numbers and additions to a few. Parameters of another kind have the
+model built anew for each of their runs.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,21 +10,20 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
-from sebody.basics.errors import InputError
 from sebody.engine.offsets import Offsets, arrays_of, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
-from sebody.explore.ensembles.changes import BODIES, MOTION, Handle
+from sebody.parameters.changes import BODIES, MOTION, Handle
+from sebody.parameters.lines import lines
+from sebody.parameters.table import PLACES
 from sebody.runs.simulation import Simulation
 
 # what the stiffness of bristles, or that they hold something at the start, may follow from
 OF_BRISTLES = ".bristle", ".radius", ".level", ".size", ".ratio"
-OF_MASSES = ".mass", ".position", ".rotation"       # and what masses and constraints follow from
-LINEAR = 1e-12      # largest deviation from a line, relative to the largest of the numbers compared
+OF_MASSES = ".mass", *PLACES        # and what masses and constraints follow from
 
 
 class Fact(NamedTuple):
@@ -41,13 +39,6 @@ OWN_STARTS = (
     Fact("gears whose teeth are as stiff as the step allows",
          lambda one: any("teeth" in load.tuned for load in one.model.loads)),
 )
-
-
-class Lines(NamedTuple):
-    """Numbers that depend linearly on parameters."""
-
-    slots: NDArray      # (k,) places in the buffer
-    slopes: csr_array   # (k, components of the parameters)
 
 
 class Image:
@@ -80,7 +71,8 @@ class Image:
             for array, before in zip((state.frames, state.memory), template.sampling.unsampled,
                                      strict=True):
                 self.floats[self.offsets.of(array)] = before
-        self.lines = self._lines(handles) if self._can_copy(handles) else None
+        self.lines = (lines(handles, self._numbers, template.grid) if self._can_copy(handles)
+                      else None)
 
     @property
     def linear(self) -> bool:
@@ -117,51 +109,6 @@ class Image:
                     or ((constrained or one.begun) and MOTION in touched)
                     or (one.start.changed and touched & {BODIES, MOTION}))
 
-    def _lines(self, handles: Mapping[str, Handle]) -> Lines | None:
-        """Slopes of all numbers; None unless they depend linearly on all parameters together."""
-        base, slopes, steps = self._numbers(), [], []
-        for handle in handles.values():
-            for k in range(handle.base.size):
-                slopes.append(self._slope(handle, k, base))
-                if slopes[-1] is None:
-                    return None
-            # another part of a step for every component
-            steps.append(_step(handle) * (1 + np.arange(len(slopes) - handle.base.size,
-                                                        len(slopes))) / len(slopes))
-        together = self._at(list(handles.values()), steps)
-        change = np.concatenate(steps) @ np.array(slopes)
-        if together is None or not _equal(together - base, change, base, together):
-            return None
-        slots = np.flatnonzero(np.any(np.array(slopes) != 0.0, axis=0))
-        return Lines(slots, csr_array(np.array(slopes)[:, slots].T))
-
-    def _slope(self, handle: Handle, k: int, base: NDArray) -> NDArray | None:
-        """Change of all numbers by one component of a parameter; None if it is not linear."""
-        steps = np.zeros(handle.base.size)
-        steps[k] = _step(handle)[k]
-        one, two = self._at([handle], [steps]), self._at([handle], [2 * steps])
-        if one is None or two is None or not _equal(two - base, 2 * (one - base), base, two):
-            return None
-        change = one - base
-        rounding = LINEAR * np.maximum(np.abs(base), np.abs(one))
-        return np.where(np.abs(change) > rounding, change, 0.0) / steps[k]
-
-    def _at(self, handles: list[Handle], steps: list[NDArray]) -> NDArray | None:
-        """All numbers with some parameters changed; None if the model cannot have these values."""
-        try:
-            for handle, step in zip(handles, steps, strict=True):
-                value = handle.base + step.reshape(handle.base.shape)
-                if handle.as_built is None:
-                    handle.set(value)
-                else:
-                    handle.as_built(value, self.template.grid)
-            return self._numbers()
-        except InputError:
-            return None
-        finally:
-            for handle in reversed(handles):
-                handle.reset()
-
     def _numbers(self) -> NDArray | None:
         """All numbers of the model as it is now, before its start; None if its pattern differs.
 
@@ -180,17 +127,6 @@ class Image:
         same.packed(state, found)
         found[np.isinf(found)] = 0.0
         return found
-
-
-def _step(handle: Handle) -> NDArray:
-    """By how much the components of a parameter are changed to see what follows."""
-    return np.maximum(1.0, np.abs(handle.base)).ravel()
-
-
-def _equal(one: NDArray, other: NDArray, *numbers: NDArray) -> bool:
-    """Whether two changes are the same but for rounding of the numbers that changed."""
-    size = max(np.abs(n).max(initial=0.0) for n in numbers)
-    return bool((np.abs(one - other) <= LINEAR * size).all())
 
 
 def _alike(group: System | State, other: System | State, sizes_only: bool = False) -> bool:

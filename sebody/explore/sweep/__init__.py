@@ -18,7 +18,6 @@ from sebody.basics.errors import InputError
 from sebody.basics.files import check_target
 from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import Output
-from sebody.explore.ensembles.handles import GRAVITY
 from sebody.explore.ensembles.work import processors
 from sebody.explore.sweep import executors as places
 from sebody.explore.sweep import sobol
@@ -26,6 +25,7 @@ from sebody.explore.sweep.batches import OF_RUN, Plan, check_plan, tasks_of
 from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution
+from sebody.parameters.table import GRAVITY
 from sebody.runs.progress import showing
 
 BATCH = 100             # runs of a task

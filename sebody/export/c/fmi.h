@@ -87,8 +87,9 @@ static int fmu_set(Fmu *fmu, const uint32_t *references, size_t count, const dou
   for (size_t k = 0; k < count; k++) {
     if (references[k] < 1 || references[k] > INPUTS)
       return refuse(fmu, "a variable that is no input or parameter cannot be set");
-    if (!isfinite(values[k])) return refuse(fmu, "an input is not finite");
-    instance_set(fmu->model, (int)references[k] - 1, values[k]);
+    int input = (int)references[k] - 1;
+    if (instance_refuses(fmu->model, input, values[k])) return refuse(fmu, fmu->model->message);
+    instance_set(fmu->model, input, values[k]);
   }
   return OK;
 }

@@ -15,11 +15,12 @@ EXPORT int NAMED(run)(Instance *m, int64_t steps, double *rows) {
 EXPORT int NAMED(run_to)(Instance *m, double t) { return instance_run_to(m, t); }
 EXPORT double NAMED(time)(const Instance *m) { return time_of(m); }
 EXPORT int NAMED(set)(Instance *m, int input, double value) {
-  if (input < 0 || input >= INPUTS || !isfinite(value)) {
-    snprintf(m->message, sizeof m->message, "%s: input %d is %g: give one of %d inputs a finite "
-             "value", MODEL_NAME, input, value, INPUTS);
+  if (input < 0 || input >= INPUTS) {
+    snprintf(m->message, sizeof m->message, "%s: there is no input %d: give one of %d",
+             MODEL_NAME, input, INPUTS);
     return 1;
   }
+  if (instance_refuses(m, input, value)) return 1;
   instance_set(m, input, value);
   return 0;
 }

@@ -190,6 +190,25 @@ static double instance_input(const Instance *m, int k) {
   return INPUT_FACTOR[k] * *numbers(m, INPUT_AT[k]);
 }
 
+/* Numbers that follow from parameters, after one of these was set. */
+static void set_parameters(Instance *m) {
+  const double *values = numbers(m, AT_SETTINGS);
+  for (int i = 0; i < SETTINGS; i++) {
+    double sum = SETTING_OFFSET[i];
+    for (int64_t j = SETTING_BEGINS[i]; j < SETTING_BEGINS[i + 1]; j++)
+      sum += SETTING_SLOPE[j] * values[SETTING_BY[j]];
+    *numbers(m, SETTING_AT[i]) = sum;
+  }
+}
+
+/* Whether a value is none that an input can have; says so. */
+static int instance_refuses(Instance *m, int k, double value) {
+  if (isfinite(value) && value >= INPUT_LEAST[k] && value <= INPUT_MOST[k]) return 0;
+  snprintf(m->message, sizeof m->message, "%s: %s is %g: give a finite value from %.6g to %.6g",
+           MODEL_NAME, INPUT_NAME[k], value, INPUT_LEAST[k], INPUT_MOST[k]);
+  return 1;
+}
+
 /* Set an input from now on: accelerations are solved for anew when the run goes on. */
 static void instance_set(Instance *m, int k, double value) {
   if (value == instance_input(m, k)) return;
@@ -205,7 +224,9 @@ static void instance_set(Instance *m, int k, double value) {
     *begun = time_of(m);
   } else {
     *numbers(m, INPUT_AT[k]) = value;
+    set_parameters(m);
     flags[CONTROL_WANTED] = EVALUATED;
+    if (KEEPS) *numbers(m, AT_FACTORS_VALID) = 0.0;
   }
   flags[CONTROL_RESTART] = ASKED;
   m->stale = 1;

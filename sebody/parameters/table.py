@@ -1,4 +1,7 @@
-"""What can be varied in a model, by name: ``<owner>.<quantity>``, as quantities of results are.
+"""The table of parameters: ``<owner>.<quantity>``, as quantities of results are.
+
+Ensembles, sweeps, gradients, calibration and exports vary or set what is listed here. Of a
+parameter of several numbers ``<parameter>.x`` or ``<parameter>.2`` is one, as ``gravity.y``.
 
 ==========================  ========================================================================
 ``<node>.position``         initial position, (3,), planar (2,) [length]
@@ -26,18 +29,21 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
-from sebody.explore.ensembles import changes, load_changes
-from sebody.explore.ensembles.changes import Handle
 from sebody.model.control_parts import Controller
 from sebody.model.element_numbers import refuse_numbers
 from sebody.model.model import Model
 from sebody.model.parts import Element
+from sebody.parameters import changes, load_changes
+from sebody.parameters.changes import Handle
+from sebody.quantities.names import AXES
 
 GRAVITY = "gravity"
-PLACES = "position", "rotation"     # what moves the starts of contacts and stops
+PLACES = ".position", ".rotation"   # what moves the starts of runs, of contacts and stops
 
 
 class Kind(NamedTuple):
@@ -65,6 +71,34 @@ def handle(model: Model, name: str) -> Handle:
         if owner in parts and quantity in kind.quantities:
             return kind.quantities[quantity](model, parts[owner], name)
     raise unknown("parameter", name, handles(model), "the model has")
+
+
+class Found(NamedTuple):
+    """A parameter that a name is of, and which of its numbers, counted from 0; None of all."""
+
+    name: str
+    handle: Handle
+    component: int | None
+
+
+def parameter(model: Model, name: str) -> Found:
+    """Parameter, or one of its numbers, by name.
+
+    Raises
+    ------
+    InputError
+        As `handle`, or a number that the parameter does not have.
+    """
+    owner, _, last = inputs.name(name, "name of a parameter").rpartition(".")
+    if not owner or not (last in AXES or last.isdigit()):
+        return Found(name, handle(model, name), None)
+    found, component = handle(model, owner), AXES.index(last) if last in AXES else int(last)
+    if found.whole or found.base.ndim == 0 or component >= found.base.size:
+        has = ("whole bodies for values" if found.whole else "one number"
+               if found.base.ndim == 0 else f"{found.base.size} numbers")
+        raise InputError(f"parameter {name!r}: {owner} has {has}, so none is called {last!r}: give "
+                         f"{owner!r}")
+    return Found(owner, found, component)
 
 
 def handles(model: Model) -> Iterable[str]:
@@ -137,10 +171,10 @@ def refuse_values(model: Model, names: Iterable[str]) -> None:
 def checked_parts(model: Model, names: Iterable[str]) -> list[Element]:
     """Parts whose builders have checks of what parameters of these names change."""
     parts = _contacts(model)
-    owners = [name.rpartition(".") for name in names]
-    if any(quantity in PLACES for *_, quantity in owners):
+    names = list(names)
+    if any(name.endswith(PLACES) for name in names):
         return list(parts.values())
-    return [parts[owner] for owner in dict.fromkeys(owner for owner, *_ in owners)
+    return [parts[owner] for owner in dict.fromkeys(name.rpartition(".")[0] for name in names)
             if owner in parts]
 
 
@@ -170,26 +204,84 @@ def refused(model: Model, found: Mapping[str, Handle], values: Mapping[str, Any]
     return reasons
 
 
-def given(model: Model, parameters: Mapping[str, Any]) -> tuple[dict[str, Handle], int]:
-    """Handles of some parameters, and the number of their values.
+def checked_values(model: Model, parameters: Mapping[str, Any]
+                   ) -> tuple[dict[str, Found], dict[str, Any], int]:
+    """What some names are of, checked values of each, and the number of runs.
 
     Raises
     ------
     InputError
         Unknown names, values of another shape or outside their bounds, arrays of different
-        lengths, or none at all.
+        lengths, a number that is given twice, or none at all.
     """
     if not isinstance(parameters, Mapping) or not parameters:
         raise inputs.refusal("parameters", parameters, "give a dict of names and arrays of values")
-    found = {name: handle(model, name) for name in parameters}
-    lengths = {name: len(found[name].checked(name, values))
-               for name, values in parameters.items()}
+    found = {name: parameter(model, name) for name in parameters}
+    _refuse_twice(found)
+    checked = {name: (one.handle if one.component is None else one.handle.part(one.component)
+                      ).checked(name, parameters[name]) for name, one in found.items()}
+    lengths = {name: len(values) for name, values in checked.items()}
     if len(set(lengths.values())) > 1:
         raise InputError("parameters have different numbers of values: " + ", ".join(
             f"{name} {count}" for name, count in lengths.items()) + "; give one for each run")
     runs = next(iter(lengths.values()))
     if not runs:
         raise InputError(f"{next(iter(lengths))!r} has no values: give one for each run")
-    # whole bodies first: factors are those of the body that is there
-    found = dict(sorted(found.items(), key=lambda item: not item[1].whole))
-    return found, runs
+    return found, checked, runs
+
+
+def given(model: Model, parameters: Mapping[str, Any]
+          ) -> tuple[dict[str, Handle], dict[str, Any], int]:
+    """Handles and values of some parameters, and the number of runs.
+
+    Of ``gravity.x`` and ``gravity.y`` the values are those of one parameter, (runs, 2).
+
+    Raises
+    ------
+    InputError
+        As `checked_values`.
+    """
+    found, checked, runs = checked_values(model, parameters)
+    values = {owner: checked[names[0]] if found[names[0]].component is None
+              else np.stack([checked[name] for name in names], axis=1)
+              for owner, names in by_parameter(found).items()}
+    return varied(found), values, runs
+
+
+def by_parameter(found: Mapping[str, Found]) -> dict[str, list[str]]:
+    """Names by the parameter that each is of."""
+    owners: dict[str, list[str]] = {}
+    for name, one in found.items():
+        owners.setdefault(one.name, []).append(name)
+    return owners
+
+
+def varied(found: Mapping[str, Found]) -> dict[str, Handle]:
+    """Handles of parameters, or of those numbers of each that are named.
+
+    Whole bodies come first: factors are those of the body that is there.
+    """
+    handles: dict[str, Handle] = {}
+    for owner, names in by_parameter(found).items():
+        one = found[names[0]]
+        handles[owner] = one.handle if one.component is None else one.handle.part(
+            [found[name].component for name in names])
+    return dict(sorted(handles.items(), key=lambda item: not item[1].whole))
+
+
+def _refuse_twice(found: Mapping[str, Found]) -> None:
+    """Refuse a number that two names are of.
+
+    Raises
+    ------
+    InputError
+    """
+    taken: dict[tuple[str, int | None], str] = {}
+    for name, (owner, one, component) in found.items():
+        for number in (component,) if component is not None else (None, *range(one.base.size)) if (
+                not one.whole) else (None,):
+            if (owner, number) in taken:
+                raise InputError(f"parameters {taken[owner, number]!r} and {name!r} give the same "
+                                 "number: leave one out")
+            taken[owner, number] = name
+

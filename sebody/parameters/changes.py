@@ -1,7 +1,7 @@
 """Changes of a model that is built: how each quantity of a part is set and put back."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -54,6 +54,18 @@ class Handle:
     def whole(self) -> bool:
         """Whether the values are objects."""
         return not isinstance(self.base, np.ndarray)
+
+    def part(self, components: int | list[int]) -> "Handle":
+        """Handle of some of the numbers, in this order; the others are those as built."""
+        def whole(value: NDArray) -> NDArray:
+            found = np.array(self.base, dtype=float)
+            found.reshape(-1)[components] = value
+            return found
+        as_built = self.as_built
+        return replace(
+            self, base=np.asarray(np.array(self.base, dtype=float).reshape(-1)[components]),
+            set=lambda value: self.set(whole(value)), as_built=None if as_built is None else
+            lambda value, grid: as_built(whole(value), grid))
 
     def checked(self, name: str, values: Any) -> Any:
         """Values of some runs, (runs, *shape), or objects.

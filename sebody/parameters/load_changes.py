@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from sebody.assembly.close_rows import Grid, close_corners
 from sebody.basics.errors import InputError
-from sebody.explore.ensembles.changes import LOADS, MOTION, Handle, attribute_of, constants_of
 from sebody.model.control_parts import Controller
 from sebody.model.histories import time_function
 from sebody.model.history_rows import rows_of
@@ -16,6 +15,7 @@ from sebody.model.impacts import LEAST, SLOW, damping_of, restitution_of
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Motion
 from sebody.model.time_functions import TimeFunction
+from sebody.parameters.changes import LOADS, MOTION, Handle, attribute_of, constants_of
 
 # what can be varied of springs, and the constant of their kernels
 OF_SPRINGS = {"stiffness": "k", "damping": "c", "cubic": "k3", "length": "length", "rest": "rest",
