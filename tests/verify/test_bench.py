@@ -77,9 +77,9 @@ def test_a_run_without_the_peer_compares_nothing():
     assert bench.ratios([MINE]) == []
 
 
-def test_unknown_scene_is_named(capsys):
-    assert main(["bench", "shaft"]) == 2
-    assert "no benchmark of scene 'shaft': use hinged-beam" in capsys.readouterr().err
+def test_a_scene_without_benchmark_is_named():
+    with pytest.raises(InputError, match="no benchmark of scene 'shaft': use hinged-beam"):
+        bench.measure(["shaft"])
 
 
 def test_missing_peer_is_named(alone):
@@ -134,3 +134,62 @@ def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
     assert "thread_efficiency" in together.as_dict()
     # runs of 300 steps: the time a step belongs to the time of all runs
     assert together.wall_seconds == pytest.approx(together.us_per_step * 1e-6 * 300 * 10)
+
+
+OWN_SCENE = '''"""Bars of unequal length on a spring."""
+from sebody import Model
+from sebody.fem import circle
+from sebody.scenes.scene import Scene
+
+def build() -> Scene:
+    model = Model(planar=True)
+    model.gravity((0.4, -9.0))
+    at = model.node("n0", (0.3, -0.2))
+    model.revolute(at)
+    for k in range(3):
+        end = model.node(f"n{k + 1}", (0.5 * k + 1.0, 0.1 * k * k))
+        model.beam(f"b{k}", (at, end), circle(0.01, 2e11, 0.3, 7800.0), 4, 1, 1)
+        at = end
+    model.rigid_body("tip", at, 2.0, 0.1)
+    wall = model.node("wall", (2.0, 1.0))
+    model.fix(wall)
+    model.spring(at, wall, 300.0)
+    return Scene("bars", "bars on a spring", model, 0.01, 0.5)
+'''
+
+
+def test_the_cost_of_a_users_scene_is_told_by_its_parts(tmp_path, capsys):
+    (tmp_path / "own.py").write_text(OWN_SCENE)
+    assert main(["bench", str(tmp_path / "own.py"), "--json"]) == 0
+    own_cost, = json.loads(capsys.readouterr().out)["costs"]
+    scene = {}
+    exec(OWN_SCENE, scene)
+    run = simulate((made := scene["build"]()).model, made.h, made.t_end)
+    assert own_cost["scene"] == "bars" and own_cost["steps"] == run.steps == 50
+    assert own_cost["corrections"] == pytest.approx(run.iterations_per_step)
+    assert own_cost["matrices"] == pytest.approx(run.matrices / run.steps)
+    parts = {part["name"]: part for part in own_cost["parts"]}
+    counts = {name.partition(" of ")[2]: part["count"] for name, part in parts.items()
+              if name.startswith("forces")}
+    assert sorted(counts.values()) == [1, 1, 3] and "element_planar_spring" in counts
+    assert {name for name in parts if " of element" in name or " of super" in name} == {
+        f"{what} of {kind}" for what in ("forces", "matrices") for kind in counts}
+    for part in own_cost["parts"]:
+        assert part["microseconds"] > 0.0
+        wanted = ("matrices" if part["name"].startswith(("matrices", "sum")) else "corrections")
+        assert part["per_step"] == own_cost[wanted]
+    flexible, = (name for name in counts if name.startswith("superelement"))
+    assert (parts[f"matrices of {flexible}"]["microseconds"]
+            > parts[f"forces of {flexible}"]["microseconds"] > 0.05)
+    assert own_cost["rest_us_per_step"] < own_cost["us_per_step"]
+
+
+def test_parts_are_a_table_beside_that_of_benchmarks(alone, tmp_path, capsys):
+    (tmp_path / "own.py").write_text(OWN_SCENE)
+    assert main(["bench", "heavy-top", str(tmp_path / "own.py")]) == 0
+    text = capsys.readouterr().out
+    assert "this machine: " in text and "heavy-top" in text
+    assert ", 50 steps of 0.01: " in text
+    assert "the rest: loop, records" in text and " %\n" in text
+    assert main(["bench", "hinged-baem"]) == 2
+    assert "did you mean 'hinged-beam'" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""``sebody bench``: cost and error of the shipped scenes, beside Exudyn where it is installed."""
+"""``sebody bench``: cost and error of scenes, beside Exudyn where it is installed."""
 
 import json
 from collections.abc import Iterable
@@ -7,10 +7,14 @@ from sebody.basics.errors import InputError
 from sebody.runs.first_run import prepare
 from sebody.verify.bench import ensemble, gradient, machine, own, peer
 from sebody.verify.bench.measurement import Measurement
+from sebody.verify.bench.parts import Cost, cost
+
+__all__ = ["NAMES", "Cost", "cost", "machine_rate", "measure", "report", "to_json"]
 
 SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain", "slider-crank",
           "four-bar", "heavy-top")
 EXTRA = ("modes", ensemble.SCENE, gradient.SCENE)       # only by name
+NAMES = SCENES + EXTRA
 
 
 def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
@@ -26,9 +30,9 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
     """
     chosen = list(scenes) or list(SCENES)
     for name in chosen:
-        if name not in SCENES + EXTRA:
-            raise InputError(f"there is no benchmark of scene {name!r}: use "
-                             f"{', '.join(SCENES + EXTRA)}")
+        if name not in NAMES:
+            raise InputError(f"there is no benchmark of scene {name!r}: use {', '.join(NAMES)}, or "
+                             "`cost` for the parts of its steps")
     others = [name for name in chosen if name not in (ensemble.SCENE, gradient.SCENE)]
     prepare(case.build().model for name in others for case in own.cases(name)[:4])
     rows = ensemble.measure() if ensemble.SCENE in chosen else []
@@ -85,10 +89,11 @@ def ratios(measurements: list[Measurement]) -> list[str]:
     return lines
 
 
-def to_json(measurements: list[Measurement], rate: float) -> str:
+def to_json(measurements: list[Measurement], rate: float, costs: Iterable[Cost] = ()) -> str:
     """The results as JSON, for other programs."""
     return json.dumps({"flops_per_second": rate, "exudyn": peer.version(),
-                       "measurements": [m.as_dict() for m in measurements]}, indent=1)
+                       "measurements": [m.as_dict() for m in measurements],
+                       "costs": [one.as_dict() for one in costs]}, indent=1)
 
 
 def machine_rate() -> float:
