@@ -18,15 +18,15 @@ if TYPE_CHECKING:
         rms,
         soft_maximum,
     )
+    from sebody.explore.ensembles.gradients import Gradients, gradients
+    from sebody.explore.sizing import Sizing, size_heights
+    from sebody.explore.sizing.height_stresses import BeamStress
     from sebody.gradients.calibration import Calibration, calibrate
     from sebody.gradients.contributions import contributions
     from sebody.gradients.designs import Design, sections
     from sebody.gradients.functions import ValueAndGradient
     from sebody.gradients.gradient import Gradient, gradient
-    from sebody.gradients.height_stresses import BeamStress
-    from sebody.gradients.many import Gradients, gradients
     from sebody.gradients.ranking import Contribution, Contributions
-    from sebody.gradients.sizing import Sizing, size_heights
     from sebody.runs.limits.watch import spin_limit
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium

@@ -37,10 +37,10 @@ MAY_IMPORT = {
     "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results"},
     "small_motion": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results",
                      "pictures", "runs"},
-    "explore": {*COMPILED, "engine", "io", "reduction", "model", "assembly", "quantities",
-                "results", "pictures", "parameters", "runs", "small_motion"},
     "gradients": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "quantities",
-                  "results", "pictures", "parameters", "runs", "small_motion", "explore"},
+                  "results", "pictures", "parameters", "runs", "small_motion"},
+    "explore": {*COMPILED, "engine", "fem", "io", "reduction", "model", "assembly", "quantities",
+                "results", "pictures", "parameters", "runs", "small_motion", "gradients"},
     # names of other folders
     "analysis": {"runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py

@@ -15,7 +15,6 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.outputs import at_time
 from sebody.gradients.gradient import Differentiated, fitting, stacked
 from sebody.gradients.node_stresses import history_of
 from sebody.gradients.objectives import checked, sensor_of
@@ -29,6 +28,7 @@ from sebody.model.model import Model
 from sebody.model.variants.copying import copied
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
+from sebody.runs.outputs import at_time
 from sebody.runs.simulation import Simulation
 
 EPS = 1e-12         # of the end of the run: times of measurements that are beyond it by rounding

@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.gradient import MODES, Gradient, differentiate, fitting
 from sebody.gradients.objectives import checked
 from sebody.gradients.point import Point
 from sebody.gradients.support import refuse_model
 from sebody.model.model import Model
 from sebody.model.variants.copying import copied
+from sebody.runs.outputs import Output
 from sebody.runs.steps import whole_steps
 
 

@@ -14,7 +14,6 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.outputs import Output
 from sebody.gradients.history import History, history
 from sebody.gradients.laws import refuse_break_away
 from sebody.gradients.linear import Linear
@@ -28,6 +27,7 @@ from sebody.gradients.sweeps import Adjoint, backward, forward
 from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
 from sebody.model.variants.copying import copied
+from sebody.runs.outputs import Output
 from sebody.runs.schemes import checked as checked_scheme
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.simulation import Simulation

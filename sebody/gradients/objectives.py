@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.explore.ensembles.member import forms
-from sebody.explore.ensembles.outputs import Fold, Output, outputs_of
 from sebody.gradients.followed import Followed
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
@@ -26,6 +24,7 @@ from sebody.gradients.sweeps import Bars
 from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
+from sebody.runs.outputs import Fold, Output, forms, outputs_of
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 

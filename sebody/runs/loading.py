@@ -14,7 +14,6 @@ from scipy.sparse import csc_matrix
 from sebody.basics.errors import InputError, SimulationError
 from sebody.contract.layout import FIELD, RECORD_T
 from sebody.runs import user_faults
-from sebody.runs.folding import Tensions
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import (
@@ -32,6 +31,7 @@ from sebody.runs.settling import (
 )
 from sebody.runs.simulation import Simulation
 from sebody.runs.stability import Stiffness
+from sebody.runs.tensions import Tensions
 
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
 FOLLOWED = 1.0 / 64         # load step below which a path that ends or becomes unstable is left

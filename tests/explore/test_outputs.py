@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from sebody.explore.advice.indicators.activity import QUIET, activity
 from sebody.explore.advice.measures import Measure, lengths
 from sebody.explore.advice.quantities import Values, difference, sizes_of
-from sebody.explore.ensembles.outputs import Fold, Output
+from sebody.runs.outputs import Fold, Output
 
 T = np.cumsum(np.random.default_rng(2).uniform(0.1, 0.3, 40))
 V = np.random.default_rng(3).normal(size=(40, 2, 3))

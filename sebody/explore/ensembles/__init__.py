@@ -2,7 +2,7 @@
 
 from sebody.explore.ensembles.ensemble import Ensemble
 from sebody.explore.ensembles.outcome import Outcome
-from sebody.explore.ensembles.outputs import (
+from sebody.runs.outputs import (
     Output,
     at_time,
     final,

@@ -20,11 +20,11 @@ from sebody.explore.ensembles.apart import RECORDS, new_apart
 from sebody.explore.ensembles.beginning import Beginning
 from sebody.explore.ensembles.groups import make, new_groups, run_on
 from sebody.explore.ensembles.matrices import address_together, new_together
-from sebody.explore.ensembles.outputs import folds_of
 from sebody.kernels.lanes.kernel import Own, address_in_lanes, is_compiled, module_in_lanes
 from sebody.quantities.expressions import Tape
 from sebody.quantities.reading import reading
 from sebody.runs.first_run import SECONDS_A_LETTER, smallest
+from sebody.runs.outputs import folds_of
 from sebody.runs.schemes import generalized_alpha
 
 LOOP_SECONDS, GROUPS_SECONDS, MATRICES_SECONDS = 7.0, 3.0, 3.0      # of one processor

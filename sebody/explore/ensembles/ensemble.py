@@ -14,9 +14,7 @@ from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
-from sebody.explore.ensembles.member import Form, forms
 from sebody.explore.ensembles.outcome import Outcome
-from sebody.explore.ensembles.outputs import Output, outputs_of
 from sebody.explore.ensembles.start_values import Image
 from sebody.explore.ensembles.work import Work, processors
 from sebody.model.model import Model
@@ -27,6 +25,7 @@ from sebody.parameters.table import PLACES, given, handles, refused
 from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.fingerprint import whole
+from sebody.runs.outputs import Form, Output, forms, outputs_of
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps

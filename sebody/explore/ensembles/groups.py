@@ -21,7 +21,7 @@ from sebody.engine.state import DONE, Scheme, State
 from sebody.engine.system import System
 from sebody.explore.ensembles.apart import RECORDS, memory_of
 from sebody.explore.ensembles.beginning import Beginning, begin_together
-from sebody.explore.ensembles.folding import Folds, fold_all, forget, write_all
+from sebody.runs.folds import Folds, fold_all, forget, write_all
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,12 +15,10 @@ from sebody.engine.loop import lead
 from sebody.engine.system import System
 from sebody.explore.ensembles import groups
 from sebody.explore.ensembles.apart import RECORDS, address_of_loop, new_apart
-from sebody.explore.ensembles.folding import Folds, write_all
 from sebody.explore.ensembles.groups import Groups, make, new_groups, run_on
 from sebody.explore.ensembles.matrices import alone, carried, places, together
-from sebody.explore.ensembles.member import Copies, Course, Form
+from sebody.explore.ensembles.member import Copies, Course
 from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
-from sebody.explore.ensembles.outputs import Output, folds_of
 from sebody.explore.ensembles.shared_constants import (
     kernels_of_batches,
     own_parts,
@@ -37,6 +35,8 @@ from sebody.kernels.lanes.straight import (
     write_shared_address,
 )
 from sebody.results.tapes import States
+from sebody.runs.folds import Folds, write_all
+from sebody.runs.outputs import Form, Output, folds_of
 
 MOST_NUMBERS = 8_000        # of recorded states at a time: they stay in the processor's cache
 MOST_STEPS = 20_000         # until a thread looks whether it is to stop: tenths of a second

@@ -2,14 +2,12 @@
 
 import time
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T
-from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, TOTAL
 from sebody.engine.loop import advance, lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
@@ -28,15 +26,11 @@ from sebody.engine.state import (
 from sebody.engine.step import write_record
 from sebody.engine.system import System
 from sebody.explore.ensembles import beginning
-from sebody.explore.ensembles.outputs import Fold, Output
 from sebody.explore.ensembles.start_values import Image
-from sebody.quantities.names import split
-from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
-from sebody.results.nodal import MOTIONS
 from sebody.results.recording import Recording
-from sebody.results.tapes import States
 from sebody.runs import user_faults
+from sebody.runs.outputs import Fold, Form, Output
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
@@ -44,7 +38,6 @@ from sebody.runs.simulation import Simulation
 MOST_NUMBERS = 2_000_000    # of recorded states at a time in a thread: 16 MB
 MOST_STEPS = 1_000_000_000  # in one call of the loop
 CHUNK = 0.2                 # seconds in the loop until a thread looks whether it is to stop
-IN_LANES = {NOW, FORCE, TOTAL, ENERGY, LOAD}    # kinds of numbers that eight members give
 Stop = Callable[[], bool]
 
 
@@ -192,15 +185,6 @@ def _with_own_integers(state: State) -> State:
     return State(**own)
 
 
-class Form(NamedTuple):
-    """How a quantity is read."""
-
-    shape: tuple[int, ...]      # in a state
-    kinematic: bool             # from recorded states alone
-    columns: NDArray | None     # of recorded rows, where it is nothing but these
-    in_lanes: bool = False      # whether its tape is played for eight members
-
-
 class Course:
     """The steps of a run that has begun, and its outputs.
 
@@ -293,33 +277,3 @@ class Course:
         for name, parts in self.histories.items():
             history = np.concatenate(parts)
             values[name][run, :len(history)] = history
-
-
-def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:
-    """How each quantity is read.
-
-    Raises
-    ------
-    InputError
-        A quantity that the model does not have.
-    """
-    return {quantity: _form(simulation, quantity)
-            for quantity in {o.quantity for o in outputs.values()}}
-
-
-def _form(simulation: Simulation, quantity: str) -> Form:
-    parts = simulation.model, simulation.numbering, simulation.system, simulation.state
-    recording = Recording(*parts, simulation.rows.stretches[0], 0.0)
-    whole, _ = split(recording, quantity)
-    states = States(*parts)
-    if not states.is_inside(quantity):
-        try:
-            shape = states.put(quantity)
-            return Form(shape, states.kinds <= {NOW}, states.places(), states.kinds <= IN_LANES)
-        except NoTape:
-            pass
-    shape = look_up(recording, quantity).shape[1:]
-    motion = whole.rpartition(".")[2]
-    if states.is_inside(quantity):
-        return Form(shape, motion in MOTIONS, None)
-    return Form(shape, motion == "rotation", None)      # a rotation vector

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.contract.counts import MEMBERS
-from sebody.explore.ensembles.member import Copies, Course, Form
+from sebody.explore.ensembles.member import Copies, Course
 from sebody.explore.ensembles.outcome import Outcome
-from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.shared_constants import kernels_of_batches
 from sebody.explore.ensembles.start_values import Image
+from sebody.runs.outputs import Form, Output
 from sebody.runs.simulation import Simulation
 
 if TYPE_CHECKING:

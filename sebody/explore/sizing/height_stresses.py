@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
+from sebody.explore.sizing.beam_stresses import ConstantRows, StressedBeam
+from sebody.explore.sizing.held_beams import Elements, Held, HeldBeam
 from sebody.fem.beam import section_axes
 from sebody.fem.section import Section, StiffnessSection
-from sebody.gradients.beam_stresses import ConstantRows, StressedBeam
 from sebody.gradients.gradient import Differentiated, fitting
-from sebody.gradients.held_beams import Elements, Held, HeldBeam
 from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.parts import Beam, Superelement

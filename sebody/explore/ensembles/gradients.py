@@ -17,8 +17,6 @@ from sebody.basics.errors import InputError, LimitWarning, SimulationError
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.ensemble import Values
-from sebody.explore.ensembles.member import forms
-from sebody.explore.ensembles.outputs import Output
 from sebody.explore.ensembles.work import INTERRUPTED, LOOK, processors
 from sebody.gradients.gradient import CHAOTIC, MODES, Gradient, differentiate, fitting
 from sebody.gradients.objectives import Objectives, checked, labels_of
@@ -30,6 +28,7 @@ from sebody.model.model import Model
 from sebody.model.variants.copying import copied
 from sebody.parameters.table import checked_values
 from sebody.runs.failures import KEPT
+from sebody.runs.outputs import Output, forms
 from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from sebody.assembly.body_constants import superelement_constants
 from sebody.assembly.contracts import constants_row, counts_of
 from sebody.contract.layout import Row
+from sebody.explore.sizing.held_beams import Held
 from sebody.gradients.gradient import Differentiated
-from sebody.gradients.held_beams import Held
 from sebody.gradients.slopes import Slopes
 from sebody.gradients.sweeps import forward
 from sebody.kernels.loader import load

@@ -13,9 +13,18 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.counts import MEMBERS
-from sebody.explore.ensembles.folding import FACTS, FOUND, Folds, fold, write_values
+from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, TOTAL
+from sebody.quantities.names import split
 from sebody.quantities.reading import Reading
+from sebody.quantities.symbols import NoTape
+from sebody.results.naming import look_up
+from sebody.results.nodal import MOTIONS
+from sebody.results.recording import Recording
+from sebody.results.tapes import States
+from sebody.runs.folds import FACTS, FOUND, Folds, fold, write_values
+from sebody.runs.simulation import Simulation
 
+IN_LANES = {NOW, FORCE, TOTAL, ENERGY, LOAD}    # kinds of numbers that eight members give
 # as of `fold`
 KINDS = ("maximum", "minimum", "rms", "integral", "final", "at", "soft_maximum", "history")
 
@@ -132,7 +141,8 @@ class Room(NamedTuple):
     @classmethod
     def of(cls, output: Output, shape: tuple[int, ...]) -> Room:
         """Room for an output of a quantity of some shape."""
-        return cls(*np.zeros((3, output.size(shape), 1)), np.zeros(FACTS))
+        kept, before, largest = np.zeros((3, output.size(shape), 1))
+        return cls(kept, before, largest, np.zeros(FACTS))
 
 
 def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
@@ -158,12 +168,13 @@ def folds_of(outputs: Sequence[Output], shapes: Sequence[tuple[int, ...]],
     sizes = [(len(own), output.size(shape))
              for output, shape, own in zip(outputs, shapes, columns, strict=True)]
     ends = np.cumsum([(0, 0), *sizes], axis=0)
+    kept, before, largest = np.zeros((3, ends[-1, 1], MEMBERS))
     return Folds(np.array(kinds, np.int64), np.array(numbers, float), np.array(norms, bool), ends,
                  np.concatenate([np.zeros(0, np.int64), *columns]),
                  np.array(taped, dtype=np.int64), inputs, tape.steps, tape.factors, tape.weights,
                  tape.outputs, np.tile(tape.numbers, (MEMBERS, 1)),
                  np.zeros((states, len(tape.outputs), MEMBERS)),
-                 *np.zeros((3, ends[-1, 1], MEMBERS)), np.zeros((len(outputs), FACTS)))
+                 kept, before, largest, np.zeros((len(outputs), FACTS)))
 
 
 class Fold:
@@ -201,3 +212,42 @@ def _asked(output: Output) -> tuple[int, float, bool]:
     """What `fold` is to make."""
     number = output.power if output.time is None else output.time
     return KINDS.index(output.kind), number, output.norm
+
+
+class Form(NamedTuple):
+    """How a quantity is read."""
+
+    shape: tuple[int, ...]      # in a state
+    kinematic: bool             # from recorded states alone
+    columns: NDArray | None     # of recorded rows, where it is nothing but these
+    in_lanes: bool = False      # whether its tape is played for eight members
+
+
+def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:
+    """How each quantity is read.
+
+    Raises
+    ------
+    InputError
+        A quantity that the model does not have.
+    """
+    return {quantity: _form(simulation, quantity)
+            for quantity in {o.quantity for o in outputs.values()}}
+
+
+def _form(simulation: Simulation, quantity: str) -> Form:
+    parts = simulation.model, simulation.numbering, simulation.system, simulation.state
+    recording = Recording(*parts, simulation.rows.stretches[0], 0.0)
+    whole, _ = split(recording, quantity)
+    states = States(*parts)
+    if not states.is_inside(quantity):
+        try:
+            shape = states.put(quantity)
+            return Form(shape, states.kinds <= {NOW}, states.places(), states.kinds <= IN_LANES)
+        except NoTape:
+            pass
+    shape = look_up(recording, quantity).shape[1:]
+    motion = whole.rpartition(".")[2]
+    if states.is_inside(quantity):
+        return Form(shape, motion in MOTIONS, None)
+    return Form(shape, motion == "rotation", None)      # a rotation vector

@@ -13,8 +13,8 @@ from scipy.optimize import minimize
 
 from sebody.basics import inputs
 from sebody.engine.state import Scheme
+from sebody.explore.sizing.height_stresses import BeamStress
 from sebody.fem.section import Section, StiffnessSection
-from sebody.gradients.height_stresses import BeamStress
 from sebody.model.model import Model
 
 CLEARLY = 1.01      # of the limit: a search that has ended well leaves less above it
@@ -63,9 +63,9 @@ class Sizing:
         InputError
             A picture that cannot be made.
         """
-        from sebody.gradients.picture import draw_sizing
+        from sebody.explore.sizing.picture import draw
 
-        return draw_sizing(self, path)
+        return draw(self, path)
 
     def __repr__(self) -> str:
         most, ended = self.stresses.max(), ""

@@ -8,8 +8,8 @@ import pytest
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import BeamStress, size_heights
+from sebody.explore.sizing.held_beams import Elements, HeldBeam
 from sebody.fem import planar_beam, rectangle, straight_beam
-from sebody.gradients.held_beams import Elements, HeldBeam
 from sebody.reduction import craig_bampton
 from sebody.runs.schemes import generalized_alpha
 
