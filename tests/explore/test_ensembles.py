@@ -14,6 +14,7 @@ from sebody.fem import Section, straight_beam
 from sebody.parameters.table import handle
 from sebody.reduction import craig_bampton
 from sebody.reduction.scaling import scaled
+from sebody.runs.outputs import forms
 
 H, T_END = 1e-3, 0.03
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
@@ -208,7 +209,7 @@ def test_columns_of_recorded_rows_are_the_quantity(hinged, quantity, plain):
     """What is read as columns is what a result gives, in states with nothing in common."""
     run = Simulation(hinged.model, 1e-3)
     run.run_to(3e-3)
-    found = member.forms(run, {"it": final(quantity)})[quantity]
+    found = forms(run, {"it": final(quantity)})[quantity]
     if plain is not None:
         assert (found.columns is not None) == plain
     if found.columns is not None:
