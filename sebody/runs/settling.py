@@ -11,6 +11,7 @@ potential (R. T. Rockafellar, SIAM J. Control and Optimization 14, 1976, p. 877)
 until the springs are soft beside the loads; then the steps are repeated until nothing is left of
 them, by a factor of about `LAST` in each. Where they shrink slowly, as of a rod between ball joints
 that only its own sag keeps from rolling, the springs are still too stiff and their rate falls on.
+They also end where springs pull with no more than the rounding of forces.
 """
 
 from typing import NamedTuple
@@ -35,6 +36,7 @@ LEAST = 1.0 / 64.0          # part of a correction: those that do not shrink are
 NUDGE = 1e-3                # of an unstable state along its softest motion, in extents or radians
 PUSH = 1e-6                 # share of the forces that may act on a motion without stiffness
 ROUNDED = 1e-13             # part of the forces of all elements that is rounding of their sums
+PLACED = 4.0 * np.finfo(float).eps  # of positions and rotations: what rounding may leave
 SEARCH = 2500               # iterations of a motion to rest: falling arches of forty rods take 1500
 SEARCHES = 4000             # of all motions of a structure that lead to no rest; then
 FEW = 200                   # of each further one: a smaller load step may rest soon
@@ -172,7 +174,8 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
             if rate > unit / LAST:
                 return False
             continue
-        if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance):
+        if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance
+                       or _is_rounding(run, found.tangent, springs)):
             work.left = before
             return True
         if ending and moved > SLOW * last:
@@ -182,6 +185,18 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
             return False
         rate, faster = max(rate / faster, lowest), min(SLOWEST * faster, FASTEST)
     return False
+
+
+def _is_rounding(run: Simulation, tangent: csc_matrix, springs: Springs) -> bool:
+    """Tell if springs pull with no more than what the rounding of unknowns makes of forces.
+
+    So they do on rods that spin freely, by as much as softer springs let these turn.
+    """
+    n = run.numbering.free
+    places = np.where(run.system.magnitude[:n] > 0.0, run.system.magnitude[:n],
+                      np.abs(run.state.q[:n]))
+    pull = springs.stiffness * _displacement(run, springs.q, springs.R)
+    return bool(np.all(np.abs(pull) <= PLACED * (abs(tangent) @ places)))
 
 
 def _is_least(run: Simulation, tangent: csc_matrix, unit: float, rests: bool) -> bool:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Model, SimulationError
 from sebody.analysis import equilibrium, vibrations
-from sebody.fem import StiffnessSection, rectangle
+from sebody.fem import StiffnessSection, circle, rectangle
 
 WEIGHT = 9.81
 
@@ -99,6 +99,31 @@ def test_chains_hang_in_catenaries(count, seed, options):
     found, aside = hanging(result, count, turn, place)
     exact = catenary(lengths, masses, 0.7, 0.2)[1:]
     assert np.abs(found - exact).max() < 1e-9 and aside < 1e-9
+
+
+def test_a_chain_of_soft_rods_hangs_straight_down():
+    """Rods that spin freely, from an inclined line in ten load steps: each stretches by its load.
+
+    Softer springs of the search only let the rods spin farther by rounding.
+    """
+    n, rod, section = 10, 0.45, circle(0.004, 2e8, 0.3, 7800.0)
+    turn = Rotation.random(random_state=4).as_matrix()
+    place, way = np.array([1.0, 2.0, 3.0]), turn @ [np.sin(0.7), 0.0, -np.cos(0.7)]
+    model = Model()
+    model.gravity(-WEIGHT * turn[:, 2])
+    last = model.node("p0", place)
+    model.fix(last, "position")
+    for k in range(n):
+        begin = last if k == 0 else model.node(f"q{k}", place + rod * k * way, at=last)
+        last = model.node(f"p{k + 1}", place + rod * (k + 1) * way)
+        model.beam(f"rod {k}", (begin, last), section, 2, 1, 0)
+    result = equilibrium(model)
+    ends = np.array([result[f"p{k}.position"][-1] for k in range(n + 1)])
+    weight = WEIGHT * section.density * section.area * rod
+    pulls = weight * (n - np.arange(n) - 0.5)
+    stretched = np.append(0.0, np.cumsum(rod * (1.0 + pulls / (2e8 * section.area))))
+    assert np.abs((ends - place) @ turn - np.outer(stretched, [0.0, 0.0, -1.0])).max() < 1e-7
+    assert result.stability == "stable"
 
 
 AXIAL = 2e3
