@@ -44,6 +44,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         dest="changes", help="a parameter of the scene that does not vary")
     parser.add_argument("--t-end", type=real, metavar="T", help="end time, the scene's by default")
     parser.add_argument("--step", type=real, metavar="H", help="time step, the scene's by default")
+    parser.add_argument("--equilibrium", action="store_true",
+                        help="start every run from the equilibrium under gravity and the loads of "
+                             "t = 0; parameters are arguments of build then")
     parser.add_argument("--output", type=Path, metavar="SWEEP",
                         help="write SWEEP.npz, SWEEP.csv or, with pandas, .parquet, and with "
                              "matplotlib SWEEP.png; an interrupted sweep continues from SWEEP.npz")
@@ -71,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
     fixed = given_arguments(options.scene, build, options.changes)
     fixed |= {name: value for name in ("t_end", "step")
               if (value := getattr(options, name)) is not None}
+    fixed |= {"equilibrium": True} if options.equilibrium else {}
     bar = Progress()
 
     def progress(part: float) -> None:

@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from sebody import InputError, simulate
-from sebody.analysis import final, maximum
+from sebody.analysis import equilibrium, final, maximum
 from sebody.cli.entry import main
 from sebody.explore import sweep as room
 from sebody.explore.sweep import Distribution, sobol, sweep
@@ -142,6 +142,9 @@ REFUSED = {
             "length varies and is set to 2.0: leave out one of them"),
     "output": ({"listed": {"length": [1.0]}, "outputs": {"x": final("top.position")}},
                "did you mean 'tip.position'"),
+    "moved": ({"listed": {"length": [1.0], "spring.stiffness": [70.0, 90.0]},
+               "fixed": {"equilibrium": True}},
+              "spring.stiffness cannot vary where runs start from equilibrium: .*argument of build"),
     "one index": ({"sampled": {"length": Distribution("uniform", (1, 2))}, "sobol_n": 64},
                   "two --sample at least"),
 }
@@ -188,6 +191,26 @@ def test_the_command(tmp_path, capsys):
     assert main(["sweep", str(scene), "--vary", "length=1,2", "--keep", "at_time(tip.position)"
                  ]) == 2
     assert "at_time takes a time" in capsys.readouterr().err
+
+
+def test_runs_start_from_the_equilibrium_of_their_own_model(tmp_path, capsys):
+    scene = tmp_path / "pendulum.py"
+    scene.write_text(PENDULUM)
+    command = ["sweep", str(scene), "--vary", "length=1,1.4", "--vary", "mass=1,3", "--keep",
+               "maximum(tip.position)", "--keep", "minimum(tip.position)", "--output",
+               str(tmp_path / "REST"), "--equilibrium"]
+    assert main(command) == 0
+    rest = Table.load(tmp_path / "REST.npz")
+    for k in range(4):
+        model = build(float(rest["length"][k]), float(rest["mass"][k])).model
+        there = equilibrium(model)["tip.position"][-1]
+        assert there[1] == pytest.approx(-0.2 - np.hypot(rest["length"][k], 0.7)
+                                         - 9.81 * rest["mass"][k] / 80.0)
+        for kind in ("maximum", "minimum"):
+            assert rest[f"{kind}(tip.position)"][k] == pytest.approx(there, abs=1e-8)
+    capsys.readouterr()
+    assert main(command[:-1]) == 2      # the same table without equilibria is another sweep's
+    assert "another sweep" in capsys.readouterr().err
 
 
 def test_no_cluster_is_said(monkeypatch):

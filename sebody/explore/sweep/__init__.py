@@ -21,7 +21,7 @@ from sebody.explore.ensembles import Output
 from sebody.explore.ensembles.work import processors
 from sebody.explore.sweep import executors as places
 from sebody.explore.sweep import sobol
-from sebody.explore.sweep.batches import OF_RUN, Plan, check_plan, tasks_of
+from sebody.explore.sweep.batches import EQUILIBRIUM, OF_RUN, Plan, check_plan, tasks_of
 from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution
@@ -41,8 +41,9 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
           progress: Callable[[float], None] | bool | None = None) -> Table:
     """Run a scene for all combinations of listed values, each with all sampled sets.
 
-    Parameters are ``step``, ``t_end``, ``rho``, arguments of `build`, with which the model is built
-    anew, and all that `Ensemble` can vary by name, with which it is not.
+    Parameters are ``step``, ``t_end``, ``rho``, ``equilibrium`` (true where runs start from that of
+    their model), arguments of `build`, with which the model is built anew, and all that `Ensemble`
+    can vary by name, with which it is not. With equilibria there are only the former.
 
     Parameters
     ----------
@@ -59,7 +60,8 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     sobol_n : int, optional
         In place of `runs`: the design of Sobol's indices, with this base number.
     fixed : mapping
-        What does not vary: ``step``, ``t_end``, ``rho`` and further arguments of `build`.
+        What does not vary: ``step``, ``t_end``, ``rho``, ``equilibrium`` and further arguments of
+        `build`.
     output : path, optional
         File of the table, from which an interrupted sweep continues.
     threads : int
@@ -89,6 +91,10 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
     for name in made.columns:       # other parameters are <owner>.<name>, but for gravity
         if "." not in name and name not in (*own, GRAVITY):
             raise unknown("parameter", name, (*own, GRAVITY), "a sweep of this scene has")
+    if EQUILIBRIUM in (*fixed, *made.columns) and (others := set(made.columns) - structural):
+        raise InputError(f"{min(others)} cannot vary where runs start from equilibrium: each of its "
+                         "values has another one; make it an argument of build, with which the "
+                         "model is built anew")
     models = check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made, models), made)

@@ -14,11 +14,13 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError, SebodyError
 from sebody.explore.ensembles import Ensemble, Output
 from sebody.runs.schemes import generalized_alpha
+from sebody.runs.statics import equilibrium
 from sebody.runs.steps import check_steps
 
 KEPT = 32               # ensembles that a process keeps
 TRIED = 64              # structures that are built before the first run, to see that they can be
-OF_RUN = ("step", "t_end", "rho")       # parameters that are of the run, not of the scene
+EQUILIBRIUM = "equilibrium"
+OF_RUN = ("step", "t_end", "rho", EQUILIBRIUM)      # parameters of the run, not of the scene
 
 _lock = Lock()
 _kept: dict[tuple, tuple[Ensemble, float]] = {}
@@ -89,7 +91,8 @@ def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble
     t_end = inputs.number(of_run.get("t_end", scene.t_end), "t_end", least=0)
     check_steps(t_end, h)
     steps = round(t_end / h)
-    return Ensemble(scene.model, h, scheme), steps * h
+    start = equilibrium(scene.model) if of_run.get(EQUILIBRIUM) else None
+    return Ensemble(scene.model, h, scheme, start=start), steps * h
 
 
 def _scene(build: Callable[..., Any], given: Mapping[str, Any]) -> Any:
