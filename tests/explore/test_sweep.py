@@ -144,7 +144,7 @@ REFUSED = {
                "did you mean 'tip.position'"),
     "moved": ({"listed": {"length": [1.0], "spring.stiffness": [70.0, 90.0]},
                "fixed": {"equilibrium": True}},
-              "spring.stiffness cannot vary where runs start from equilibrium: .*argument of build"),
+              "spring.stiffness cannot vary where runs start from equilibrium: .*an argument of"),
     "one index": ({"sampled": {"length": Distribution("uniform", (1, 2))}, "sobol_n": 64},
                   "two --sample at least"),
 }

@@ -92,8 +92,8 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         if "." not in name and name not in (*own, GRAVITY):
             raise unknown("parameter", name, (*own, GRAVITY), "a sweep of this scene has")
     if EQUILIBRIUM in (*fixed, *made.columns) and (others := set(made.columns) - structural):
-        raise InputError(f"{min(others)} cannot vary where runs start from equilibrium: each of its "
-                         "values has another one; make it an argument of build, with which the "
+        raise InputError(f"{min(others)} cannot vary where runs start from equilibrium: each of "
+                         "its values has another one; make it an argument of build, with which the "
                          "model is built anew")
     models = check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))
