@@ -152,6 +152,13 @@ def rigid_body(model: Mechanism, name: str, node: Node | str, mass: float, inert
 def point_mass(model: Mechanism, name: str, node: Node | str, mass: float) -> Element:
     """A mass on a node, without inertia of rotation.
 
+    Parameters
+    ----------
+    name : str
+    node : Node or str
+    mass : float
+        [mass]
+
     Raises
     ------
     InputError

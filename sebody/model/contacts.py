@@ -133,6 +133,8 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
         Of the sphere (in a plane of the disc) [length]; 0 for a point.
     stiffness : float
         k: force / length^n; Hertz's is ``4/3 E* sqrt(R)`` with n = 1.5.
+    restitution, at_speed, exponent : float
+        See `stop`.
     friction, static : float
         Coefficients of sliding and of break-away.
     bristle, damping, speed : float

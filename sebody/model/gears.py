@@ -33,6 +33,8 @@ def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float
     stiffness : float, optional
         k of the teeth, moment on the first per angle^n of it. By default the stiffest that steps of
         the run's length follow.
+    restitution, at_speed, exponent : float
+        See `stop`.
 
     Raises
     ------

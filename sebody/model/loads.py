@@ -24,7 +24,21 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
           follower: bool = False, name: str | None = None) -> Element:
     """Force on a node: `direction` times a number, a table, a function of time or a profile.
 
-    The direction is one of space, or with ``follower=True`` turns with the node.
+    Parameters
+    ----------
+    node : Node or str
+    direction : (3,), planar (2,)
+        Global axes; its length counts [force].
+    amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
+        Over time; 1 by default.
+    follower : bool
+        The direction turns with the node, and is one of space otherwise.
+    name : str, optional
+        By default ``force on <node>.position``.
+
+    Examples
+    --------
+    >>> pull = model.force("cart", (0, 0, -1), 9.81, name="pull")
     """
     node = known(model, node)
     on = dof_block(node, "position")
@@ -44,9 +58,21 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
            follower: bool = False, name: str | None = None) -> Element:
     """Torque on a node: `direction` times a number, a table, a function of time or a profile.
 
-    In a plane the direction is a number.
+    Parameters
+    ----------
+    node : Node or str
+    direction : (3,), in a plane a number
+        Global axes, by the right hand; its length counts [force length].
+    amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
+        Over time; 1 by default.
+    follower : bool
+        The direction turns with the node, and is one of space otherwise.
+    name : str, optional
+        By default ``torque on <node>.rotation``.
 
-    The direction is one of space, or with ``follower=True`` turns with the node.
+    Examples
+    --------
+    >>> motor = model.torque("arm", (0, 1, 0), [(0.0, 0.0), (0.5, 20.0)], name="motor")
     """
     node = known(model, node)
     on = dof_block(node, "rotation")
@@ -63,7 +89,23 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
                name: str | None = None) -> Element:
     """Force on an internal mode of a superelement: `factor` times a time function.
 
-    A distributed load ``p`` has the factor ``shape . p``, the shape being mass-normalised.
+    Parameters
+    ----------
+    body : str
+        Name of the superelement.
+    mode : int
+        Number of the internal mode, from 0.
+    factor : float
+        Of a distributed load ``p``: ``shape . p``, the shape being mass-normalised.
+    amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
+        Over time; 1 by default.
+    name : str, optional
+        By default ``force on mode <mode> of <body>``.
+
+    Raises
+    ------
+    InputError
+        No such superelement or mode.
     """
     count = _body(model, body).reduced.modes
     mode = inputs.integer(mode, f"mode of superelement {body!r}")
@@ -91,6 +133,8 @@ def body_load(model: Mechanism, body: str, load: str,
         Name of a superelement.
     load : str
         Name of one of its loads, see `ReducedBody.loads`.
+    amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
+        Over time; 1 by default.
 
     Raises
     ------

@@ -62,6 +62,15 @@ def attach(model: Mechanism, name: str, point: ArrayLike, to: Node | str) -> Nod
     Its rotation is that of `to`. Bodies, joints and loads may act on it as on any node, and
     further links may start from it.
 
+    Parameters
+    ----------
+    name : str
+        Of the new node.
+    point : (3,), planar (2,)
+        Its initial position, global axes [length].
+    to : Node or str
+        Where the link begins.
+
     Raises
     ------
     InputError
@@ -93,6 +102,19 @@ def initial_velocity(model: Mechanism, node: Node | str, linear: ArrayLike | Non
     """Initial velocity of a node, global axes.
 
     Velocities that are not given are solved for, see `sebody.Simulation`.
+
+    Parameters
+    ----------
+    node : Node or str
+    linear : (3,), planar (2,), optional
+        [length/time]
+    angular : (3,), in a plane a number, optional
+        [rad/time]
+
+    Raises
+    ------
+    InputError
+        A velocity of what is fixed, prescribed or follows another node.
     """
     node, rates = known(model, node), []
     for kind, value, check in (("position", linear, vector),

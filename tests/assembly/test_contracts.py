@@ -142,8 +142,8 @@ def test_a_joint_built_with_a_multiplier_too_few(monkeypatch):
     """As if the formula of a joint had changed and the model had not followed."""
     from sebody.model import joints
 
-    right = joints._parallel
-    monkeypatch.setattr(joints, "_parallel",
+    right = joints.parallel
+    monkeypatch.setattr(joints, "parallel",
                         lambda *given: right(*given)._replace(multipliers=1))
     with pytest.raises(InputError, match="'hinge' does not fit its kernel .*element_parallel: it "
                                          "has 7 unknowns and the kernel 8"):
