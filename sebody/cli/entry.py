@@ -15,6 +15,7 @@ from sebody.cli import (
     animate,
     atlas,
     bench,
+    blade,
     chart,
     check,
     export,
@@ -31,8 +32,8 @@ from sebody.cli import (
 )
 
 # in the order of the help
-COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, export, inspect,
-            check, bench, chart, atlas, warm)
+COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, blade, export,
+            inspect, check, bench, chart, atlas, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.errors import InputError
+
 
 @dataclass(frozen=True, eq=False)
 class BeamStress:
@@ -20,16 +22,20 @@ class BeamStress:
         Nodes at the ends of the elements.
     forces : (n, 2, 6, 2 k)
         Section forces at the ends of unit displacements of the k DOFs of both nodes.
-    fibres : (n, p, 3, 6)
-        Stresses (xx, xy, zx) in p fibres of each section of unit section forces.
-    offsets : (n, p, 2)
-        Place y, z of the fibres in the section [length].
+    fibres : (n, 2, p, 3, 6)
+        Stresses (xx, xy, zx) in p fibres of the sections at both ends of unit section forces.
+    offsets : (n, 2, p, 2)
+        Place y, z of the fibres in the sections [length].
+    flexibility : (n, 2, 6, 6), optional
+        Strains of the sections at both ends of unit section forces: extension, shear along y and
+        z, rates of twist and of bending about y and z.
     """
 
     nodes: NDArray
     forces: NDArray
     fibres: NDArray
     offsets: NDArray
+    flexibility: NDArray | None = None
 
     def section_forces(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
         """Section forces of some elements.
@@ -47,10 +53,23 @@ class BeamStress:
         n, _, _, s = own.shape
         return self.forces[elements] @ own.reshape(n, 1, -1, s)
 
+    def section_strains(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
+        """Strains of the sections at both ends, (elements, 2, 6, s).
+
+        Raises
+        ------
+        InputError
+            Elements of an older body file, which does not say how flexible the sections are.
+        """
+        if self.flexibility is None:
+            raise InputError("section strains are unknown: the body file was written before they "
+                             "were kept, make it again")
+        return self.flexibility[elements] @ self.section_forces(moved, elements)
+
     def stress(self, moved: NDArray, elements: NDArray | slice = slice(None)) -> NDArray:
         """Stresses in the fibres of both ends, in axes of the section, (elements, 2, p, 6, s)."""
         forces = self.section_forces(moved, elements)
-        stresses = np.einsum("epcf,eafs->eapcs", self.fibres[elements], forces)
+        stresses = np.einsum("eapcf,eafs->eapcs", self.fibres[elements], forces)
         whole = np.zeros((*stresses.shape[:3], 6, stresses.shape[4]))
         whole[:, :, :, [0, 5, 4]] = stresses
         return whole
@@ -59,4 +78,6 @@ class BeamStress:
         """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
         inside = np.all(place[self.nodes] >= 0, axis=1)
         return replace(self, nodes=place[self.nodes[inside]], forces=self.forces[inside],
-                       fibres=self.fibres[inside], offsets=self.offsets[inside])
+                       fibres=self.fibres[inside], offsets=self.offsets[inside],
+                       flexibility=None if self.flexibility is None else
+                       self.flexibility[inside])

@@ -66,6 +66,8 @@ class FEModel:
         ``why; what to do``.
     materials : sequence of Material
         What it is made of, for the units.
+    damping : (n_dofs, n_dofs), dense or sparse, optional
+        Symmetric matrix of viscous damping that resists no rigid motion.
 
     Raises
     ------
@@ -91,6 +93,7 @@ class FEModel:
     followers: sparse.csr_array | None = None
     missing: Mapping[str, str] = field(default_factory=dict)
     materials: Sequence[Material] = ()
+    damping: sparse.csc_array | None = None
     rows: NDArray = field(init=False, repr=False)   # (n_nodes, k): row of each DOF, -1 for none
 
     def __repr__(self) -> str:
@@ -104,7 +107,9 @@ class FEModel:
         self._check_nodes()
         count, dimension = self.coordinates.shape
         size = int(np.sum(self.rows >= 0))
-        for name in ("stiffness", "mass"):
+        for name in ("stiffness", "mass", "damping"):
+            if name == "damping" and self.damping is None:
+                continue
             matrix = fe_matrix(getattr(self, name), name)
             if matrix.shape != (size, size):
                 have = (f"{count} nodes with {self.dofs_per_node} DOFs each" if self.dof_map is None

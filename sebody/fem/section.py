@@ -1,8 +1,10 @@
 """Cross-sections of beams: by geometry and material, or by stiffnesses and inertia a length."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
@@ -75,8 +77,8 @@ class StiffnessSection:
     fibres: tuple[Fibre, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        _check_outline(self)
-        _check_fibres(self)
+        check_outline(self)
+        check_fibres(self)
         for one in fields(self):
             value = getattr(self, one.name)
             if one.name not in ("outline", "fibres") and value is not None:
@@ -86,6 +88,34 @@ class StiffnessSection:
     def stiffnesses(self) -> "StiffnessSection":
         """The section itself: what beams are made of."""
         return self
+
+    @property
+    def flexibility(self) -> NDArray:
+        """Strains of unit section forces, (6, 6); see `GeneralSection`."""
+        shear = [0.0 if one is None else 1 / one for one in (self.shear_y, self.shear_z)]
+        return np.diag([1 / self.axial, *shear, 1 / self.torsion, 1 / self.bending_y,
+                        1 / self.bending_z])
+
+    @property
+    def inertia(self) -> NDArray:
+        """Momenta a length of unit velocities and spins, (6, 6); see `GeneralSection`."""
+        return np.diag([self.mass] * 3 + [self.inertia_x, self.inertia_y, self.inertia_z])
+
+    @property
+    def damping(self) -> NDArray:
+        """Section forces of unit rates of the strains: none."""
+        return np.zeros((6, 6))
+
+    @property
+    def wave_speed(self) -> float:
+        """Speed of waves of tension, sqrt(EA / mass a length) [length/time]."""
+        return float(np.sqrt(self.axial / self.mass))
+
+    @property
+    def gyration(self) -> tuple[float, float]:
+        """Radii of gyration along y and z [length]."""
+        return (float(np.sqrt(self.bending_z / self.axial)),
+                float(np.sqrt(self.bending_y / self.axial)))
 
 
 @dataclass(frozen=True)
@@ -131,8 +161,8 @@ class Section:
     fibres: tuple[Fibre, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        _check_outline(self)
-        _check_fibres(self)
+        check_outline(self)
+        check_fibres(self)
         for one in fields(self):
             if one.name not in ("poisson_ratio", "shear_factor", "outline", "fibres"):
                 _check_number(self, one.name, getattr(self, one.name))
@@ -199,42 +229,8 @@ class Section:
 Section.__init__ = without_symbols(Section.__init__, "Section")   # type: ignore[method-assign]
 
 
-AnySection = Section | StiffnessSection | Callable[[float], Section | StiffnessSection]
-
-
-def _called(section: Callable, place: float) -> Any:
-    try:
-        return section(place)
-    except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
-        raise InputError(f"section at {place:g} of the beam: the function raised "
-                         f"{type(error).__name__}: {error}; correct it") from error
-
-
-def section_at(section: AnySection, place: float) -> StiffnessSection:
-    """The section at `place`, from 0 at the start of a beam to 1 at its end.
-
-    Raises
-    ------
-    InputError
-        Something that is no section.
-    """
-    value = _called(section, place) if callable(section) else section
-    if not isinstance(value, (Section, StiffnessSection)):
-        raise InputError(
-            f"section {inputs.shown(value)} is none: give a Section, a StiffnessSection or a "
-            "function of the place along the beam, from 0 to 1, that returns one"
-        )
-    return value.stiffnesses
-
-
-def part_of(section: AnySection, first: float, last: float) -> AnySection:
-    """The section of the part of a beam from `first` to `last`, places from 0 to 1."""
-    if not callable(section):
-        return section
-    return lambda place: section(first + place * (last - first))
-
-
-def _check_fibres(section: Section | StiffnessSection) -> None:
+def check_fibres(section: Any) -> None:
+    """Fibres of a section as a tuple; InputError for something else."""
     remedy = "give Fibre, as Section.fibre makes them"
     what = f"{type(section).__name__}.fibres"
     checked = tuple(inputs.instance(fibre, what, Fibre, remedy)
@@ -250,7 +246,7 @@ def _check_number(section: object, name: str, value: float, may_be_zero: bool = 
     inputs.number(value, f"{type(section).__name__}.{name}", **bound)
 
 
-def _check_outline(section: Section | StiffnessSection) -> None:
+def check_outline(section: Any) -> None:
     """Corners as a tuple, which can be compared and is a key."""
     if section.outline is None:
         return

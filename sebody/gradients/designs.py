@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.fem.section import AnySection
+from sebody.fem.section_along import AnySection
 from sebody.model.beams import part_bodies, part_shapes
 from sebody.model.model import Model
 from sebody.parameters.changes import BODIES, Handle, whole_body

@@ -291,5 +291,14 @@ def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
         kind = {one.__name__: one for one in STRESSES}.get(value["part"])
         if kind is None:
             raise ValueError(f"unknown part {inputs.shown(value['part'])}")
-        return kind(**{name: _restored(one, arrays) for name, one in value["fields"].items()})
+        fields = {name: _restored(one, arrays) for name, one in value["fields"].items()}
+        return _both_ends(kind(**fields))
     return value
+
+
+def _both_ends(stress: Any) -> Any:
+    """The operator of a file written when the sections at both ends of elements were the same."""
+    if not isinstance(stress, BeamStress) or np.ndim(stress.fibres) != 4:
+        return stress
+    return replace(stress, **{name: np.repeat(getattr(stress, name)[:, None], 2, axis=1)
+                              for name in ("fibres", "offsets")})

@@ -20,8 +20,8 @@ from scipy.linalg import eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.fem import planar_beam, straight_beam
-from sebody.fem.section import AnySection
+from sebody.fem.section_along import section_at
+from sebody.model.beam_pieces import AxisPiece, Course, StraightPiece
 from sebody.reduction import ReducedBody
 
 ELEMENTS = 32           # of the whole beam whose frequencies are taken: right to 1e-4 and better
@@ -33,9 +33,8 @@ Times = tuple[float, ...]       # of tension, bending in the planes of y and z, 
 Damping: TypeAlias = float | tuple[float, str | float]
 
 
-def retardation_times(damping: Damping, name: str, planar: bool, length: float,
-                      section: AnySection) -> Times:
-    """Retardation times of each kind of deformation; none at all without damping.
+def retardation_times(damping: Damping, name: str, course: Course) -> Times:
+    """Retardation times of each kind of deformation, one for all where they are coupled.
 
     Parameters
     ----------
@@ -43,11 +42,18 @@ def retardation_times(damping: Damping, name: str, planar: bool, length: float,
         See `Model.beam`.
     name : str
         Of the beam.
+    course : Course
+        The whole beam.
+
+    Returns
+    -------
+    tuple of float
+        None at all without damping.
 
     Raises
     ------
     InputError
-        No such damping.
+        No such damping, or sections that have retardation times of their own.
     """
     what = f"beam {name!r}: damping"
     pair = damping if isinstance(damping, tuple | list) else (damping, "free 1")
@@ -56,21 +62,27 @@ def retardation_times(damping: Damping, name: str, planar: bool, length: float,
     ratio, mode = inputs.number(pair[0], what, least=0, remedy=REMEDY), pair[1]
     if ratio == 0.0:
         return ()
+    if section_at(course.section, 0.5).damping.any():
+        raise InputError(f"{what} is {damping!r}, and its sections have retardation times of their "
+                         "own: leave one of both out")
+    kinds = 1 if course.coupled else 2 if course.model.planar else 4
     if not isinstance(mode, str):
         omega = inputs.number(mode, f"{what}: frequency", above=0, remedy=REMEDY)
-        return (2.0 * ratio / omega,) * (2 if planar else 4)
+        return (2.0 * ratio / omega,) * kinds
     named = NAMED.fullmatch(mode)
     if not named:
         raise InputError(f"{what}: mode is {mode!r}: give 'free 1', 'clamped 1' (at the first "
                          "end), 'hinged 1' or another number up to 9")
-    arguments = planar, length, section, named[1], int(named[2])
+    if course.coupled and named[1] == "hinged":
+        raise InputError(f"{what}: mode is {mode!r}, and tension, torsion and bending of this beam "
+                         "are coupled: give 'free 1', 'clamped 1' or an angular frequency")
+    piece = course.piece(0.0, 1.0, ELEMENTS)
+    arguments = piece, course.coupled, named[1], int(named[2])
     try:
-        hash(arguments)
-    except TypeError:       # a section of arrays
-        times = _frequencies.__wrapped__(*arguments)
-    else:
-        times = _frequencies(*arguments)
-    return tuple(2.0 * ratio / omega if omega else 0.0 for omega in times)
+        frequencies = _frequencies(*arguments)
+    except TypeError:       # a section that has no hash
+        frequencies = _frequencies.__wrapped__(*arguments)
+    return tuple(2.0 * ratio / omega if omega else 0.0 for omega in frequencies)
 
 
 def damped(body: ReducedBody, times: Times) -> ReducedBody:
@@ -85,6 +97,8 @@ def damped(body: ReducedBody, times: Times) -> ReducedBody:
     times : tuple of float
         See `retardation_times`.
     """
+    if len(times) == 1:     # coupled: of all strains
+        return replace(body, damping=times[0] * body.stiffness)
     kinds = _kinds(body.planar)
     roots = np.sqrt(times)
     blocks = [sum(root * axes[kind] for root, axes in zip(roots, kinds, strict=True))
@@ -129,15 +143,16 @@ def _kinds(planar: bool) -> list[dict[str, NDArray]]:
 
 
 @lru_cache(maxsize=64, typed=True)
-def _frequencies(planar: bool, length: float, section: AnySection, held: str,
-                 number: int) -> Times:
+def _frequencies(piece: StraightPiece | AxisPiece, coupled: bool, held: str, number: int) -> Times:
     """Angular frequency of the mode of a number of each kind; 0 where nothing has mass."""
-    first, last = np.zeros((2, 2 if planar else 3))
-    last[0] = length
-    fe_model = (planar_beam(first, last, section, ELEMENTS) if planar else
-                straight_beam(first, last, section, ELEMENTS, (0.0, 1.0, 0.0)))
+    fe_model = piece.fe_model()
     K, M = fe_model.stiffness.toarray(), fe_model.mass.toarray()
-    return tuple(_frequency(K, M, axes, held, number) for axes in _kinds(planar))
+    if coupled:
+        free = slice(6 if held == "clamped" else 0, None)
+        squares = eigh(K[free, free], M[free, free], eigvals_only=True)
+        return (float(np.sqrt(squares[number - 1 + (6 if held == "free" else 0)])),)
+    return tuple(_frequency(K, M, axes, held, number)
+                 for axes in _kinds(fe_model.coordinates.shape[1] == 2))
 
 
 def _frequency(K: NDArray, M: NDArray, axes: dict[str, NDArray], held: str, number: int) -> float:

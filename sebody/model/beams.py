@@ -1,4 +1,4 @@
-"""Straight beams as superelements."""
+"""Beams as superelements, straight or along an axis that curves and twists."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
-from sebody.fem import planar_beam, straight_beam
-from sebody.fem.beam import section_axes
+from sebody.fem import Axis
 from sebody.fem.model import FEModel
-from sebody.fem.section import AnySection, part_of
+from sebody.fem.section_along import AnySection
 from sebody.model.arguments import known
 from sebody.model.beam_damping import Damping, Times, damped, retardation_times
+from sebody.model.beam_pieces import AxisPiece, Course, Division, StraightPiece, divided
 from sebody.model.bodies import superelement
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
@@ -34,8 +34,9 @@ OF_BODY = 20_000        # bytes of a superelement and its node
 def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
          section: AnySection, elements: int, bodies: int | None = None, modes: int = 0,
          up: ArrayLike | None = None, damping: Damping = 0.0,
-         stiffening: bool | None = None, **placing: Any) -> list[Node]:
-    """A straight beam of equal superelements; with one element each, a nonlinear beam.
+         stiffening: bool | None = None, axis: Axis | None = None, divide: Division = "length",
+         **placing: Any) -> list[Node]:
+    """A beam of superelements; with one element each, a nonlinear beam.
 
     A superelement of one finite element, with the mean of its two rotations as frame, has the
     strain energy of Simo and Reissner's geometrically exact beam: strains of the chord are
@@ -50,7 +51,7 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     ----------
     ends : two Nodes or str
         Full nodes at the ends of the axis.
-    section : Section, StiffnessSection or function
+    section : Section, StiffnessSection, GeneralSection, Stations or function
         One, or a function of the place along the beam, from 0 to 1, see `sebody.fem.straight_beam`.
     elements : int
         Finite elements from end to end.
@@ -66,11 +67,20 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
         alone means, with free ends, and ``hinged 1``; each of tension, torsion and bending in
         either plane by itself. Stresses follow the rates of strains (Kelvin and Voigt), so ratios
         grow with the frequency. With an angular frequency, ``(0.02, 35.0)``, all vibrations of
-        this frequency have the ratio.
+        this frequency have the ratio. Where tension, torsion and bending are coupled, by an axis or
+        by sections, modes are those of the whole beam, ``free 1`` or ``clamped 1``, and all strains
+        have one retardation time; sections with retardation times of their own damp by these.
     stiffening : bool, optional
         As of `superelement`; by default not with one finite element in each.
+    axis : sebody.fem.Axis, optional
+        From the first node, by a shift, to the last one; straight by default.
+    divide : 'length', 'rotation' or (bodies + 1,)
+        Superelements of equal length, or such that all turn equally under the force on the last
+        node that moves it most, the first one held: where a beam is soft there are more of them.
+        Or places of their ends, from 0 to 1.
     **placing
-        Arguments of `superelement`, such as ``frame``.
+        Arguments of `superelement`, such as ``frame``; with an axis ``rotation``, which turns it
+        into the model.
 
     Returns
     -------
@@ -81,7 +91,8 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     Raises
     ------
     InputError
-        No element, elements that cannot be divided among the bodies, or names that are taken.
+        No element, elements that cannot be divided among the bodies, names that are taken, or an
+        axis that does not fit the nodes.
     """
     inputs.name(name, "name of a beam")
     pair = inputs.items(ends, f"ends of beam {name!r}", "give two nodes")
@@ -95,27 +106,29 @@ def beam(model: Mechanism, name: str, ends: tuple[Node | str, Node | str],
     bodies = elements if bodies is None else inputs.integer(bodies, "bodies", least=1,
                                                             remedy=undivided)
     memory.check(float(OF_BODY) * bodies, f"beam {name!r} of {bodies} bodies", "give fewer bodies")
-    if up is not None and model.planar:
-        raise InputError(f"beam {name!r}: up is for beams in space, leave it out")
     if elements % bodies:
         raise InputError(undivided)
-    length = float(np.linalg.norm(last.point - first.point))
-    times = retardation_times(damping, name, model.planar, length, section)
-    options = {"modes": modes, "up": up, "damping": damping, "stiffening": stiffening, **placing}
-    step, each = (last.point - first.point) / bodies, elements // bodies
-    if each == 1 and stiffening is None:
-        stiffening = False
-    nodes = [first, *(node(model, f"{name} {k}", first.point + k * step)
-                      for k in range(1, bodies)), last]
-    body, parts = None, []
-    for k, span in enumerate(pairwise(nodes)):
-        if body is None or callable(section):
-            part = part_of(section, k / bodies, (k + 1) / bodies)
-            body = _part(model, span, part, each, modes, up, times)
+    others = {key: value for key, value in placing.items() if axis is None or key != "rotation"}
+    course = Course(model, (first, last), section, up, axis, placing.get("rotation"))
+    course.check(name)
+    places = divided(course, name, divide, elements, bodies)
+    times = retardation_times(damping, name, course)
+    options = {"modes": modes, "up": up, "damping": damping, "stiffening": stiffening,
+               "axis": axis, "divide": divide, **placing}
+    if elements == bodies:      # Simo and Reissner's strain energy, of stubby elements, too
+        stiffening = False if stiffening is None else stiffening
+        others.setdefault("frame", "converged_mean")
+    points = course.points(places)
+    nodes = [first, *(node(model, f"{name} {k}", points[k]) for k in range(1, bodies)), last]
+    parts = []
+    for k, (span, body) in enumerate(zip(
+            pairwise(nodes), _bodies(course, places, elements // bodies, modes, times),
+            strict=True)):
         parts.append(superelement(model, name if bodies == 1 else f"{name} {k + 1}", body, span,
-                                  stiffening=stiffening, **placing))
-    model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options), tuple(parts),
-                            tuple(part.reduced for part in parts)))
+                                  stiffening=stiffening, **others))
+    model.beams.append(Beam(name, tuple(nodes), section, elements, deepcopy(options, {
+        id(axis): axis}), tuple(parts), tuple(part.reduced for part in parts),
+        tuple(places.tolist())))
     return nodes
 
 
@@ -128,94 +141,88 @@ def part_bodies(model: Mechanism, beam: Beam, section: AnySection,
     held : sequence of (DOFs, modes), optional
         Of `part_shapes`: vibration modes that each keeps.
     """
-    count = len(beam.parts)
-    length = float(np.linalg.norm(beam.nodes[-1].point - beam.nodes[0].point))
-    options = beam.options
-    times = retardation_times(options["damping"], beam.name, model.planar, length, section)
-    parts = [part_of(section, k / count, (k + 1) / count) for k in range(count)]
-    each = beam.elements // count
+    course = course_of(model, beam, section)
+    times = retardation_times(beam.options["damping"], beam.name, course)
+    each, places = beam.elements // len(beam.parts), np.array(beam.places)
     if held is None:
-        return [_part(model, span, part, each, options["modes"], options["up"], times)
-                for span, part in zip(pairwise(beam.nodes), parts, strict=True)]
+        return _bodies(course, places, each, beam.options["modes"], times)
     bodies = []
-    for span, part, shapes in zip(pairwise(beam.nodes), parts, held, strict=True):
-        turn, own = _line(model, span, options["up"])
-        body = with_held_modes(_fe_model(model.planar, own, part, each), _ends(each), shapes)
-        bodies.append(_turned(damped(body, times) if times else body, turn))
+    for piece, shapes in zip(_pieces(course, places, each), held, strict=True):
+        body = with_held_modes(piece.fe_model(), _ends(each), shapes)
+        bodies.append(_turned(damped(body, times) if times else body, course.turn))
     return bodies
 
 
 def part_models(model: Mechanism, beam: Beam) -> list[tuple[FEModel, NDArray]]:
-    """FE models of a beam's superelements along x, and rotations from their axes to the model's."""
-    count = len(beam.parts)
-    made = []
-    for k, span in enumerate(pairwise(beam.nodes)):
-        turn, length = _line(model, span, beam.options["up"])
-        part = part_of(beam.section, k / count, (k + 1) / count)
-        made.append((_fe_model(model.planar, length, part, beam.elements // count), np.array(turn)))
-    return made
+    """FE models of a beam's superelements, and rotations from their axes to the model's."""
+    course = course_of(model, beam, beam.section)
+    return [(piece.fe_model(), np.array(course.turn)) for piece in _pieces(
+        course, np.array(beam.places), beam.elements // len(beam.parts))]
 
 
 def part_shapes(model: Mechanism, beam: Beam, section: AnySection) -> list[NDArray]:
     """Vibration modes of a beam's superelements with a section, along their own axes."""
-    count, each = len(beam.parts), beam.elements // len(beam.parts)
-    return [vibration_shapes(_fe_model(model.planar, _line(model, span, beam.options["up"])[1],
-                                       part_of(section, k / count, (k + 1) / count), each),
-                             _ends(each), beam.options["modes"])
-            for k, span in enumerate(pairwise(beam.nodes))]
+    each = beam.elements // len(beam.parts)
+    return [vibration_shapes(piece.fe_model(), _ends(each), beam.options["modes"])
+            for piece in _pieces(course_of(model, beam, section), np.array(beam.places), each)]
 
 
-def _part(model: Mechanism, ends: Sequence[Node], section: AnySection, elements: int, modes: int,
-          up: ArrayLike | None, times: Times) -> ReducedBody:
-    """One superelement of a beam; beams that differ in place and direction alone share the work.
+def course_of(model: Mechanism, beam: Beam, section: AnySection) -> Course:
+    """The whole way of a beam as built, with a section."""
+    return Course(model, (beam.nodes[0], beam.nodes[-1]), section, beam.options["up"],
+                  beam.options.get("axis"), beam.options.get("rotation"))
 
-    Along its own axes stretching and bending are not mixed, so slender beams lose no digits.
+
+def _bodies(course: Course, places: NDArray, each: int, modes: int, times: Times
+            ) -> list[ReducedBody]:
+    """Bodies of the parts of a beam; those that differ in place and direction alone share the work.
+
+    Along its own axes stretching and bending of a straight beam are not mixed, so slender ones
+    lose no digits.
     """
-    turn, length = _line(model, ends, up)
-    arguments = model.planar, length, section, elements, modes, times
+    made: dict = {}
+    for piece in (pieces := _pieces(course, places, each)):
+        if piece not in made:
+            made[piece] = _placed(course.turn, piece, modes, times)
+    return [made[piece] for piece in pieces]
+
+
+def _pieces(course: Course, places: NDArray, each: int) -> list[StraightPiece | AxisPiece]:
+    """The parts; straight ones that are equal but for rounding are the same."""
+    pieces = [course.piece(a, b, each) for a, b in pairwise(places.tolist())]
+    first = pieces[0]
+    if isinstance(first, StraightPiece) and not callable(course.section):
+        pieces = [first if abs(one.length - first.length) < 1e-12 * first.length else one
+                  for one in pieces]
+    return pieces
+
+
+def _placed(turn: tuple, piece: StraightPiece | AxisPiece, modes: int, times: Times
+            ) -> ReducedBody:
     try:
-        hash(arguments)
-    except TypeError:       # a section of arrays, or input that is refused below
-        return _turned(_straight.__wrapped__(*arguments), turn)
-    return _placed(turn, *arguments)
-
-
-def _line(model: Mechanism, ends: Sequence[Node], up: ArrayLike | None) -> tuple[tuple, float]:
-    """Rows of the rotation from a beam's axes to those of the model, and its length."""
-    line = np.zeros(3)
-    line[:model.dimension] = ends[1].point - ends[0].point
-    axes = section_axes(line, None if up is None else inputs.vector(up, "up", 3))
-    turn = tuple(map(tuple, axes[:model.dimension, :model.dimension].T.tolist()))
-    return turn, float(np.linalg.norm(line))
+        return _kept(turn, piece, modes, times)
+    except TypeError:       # a section that has no hash, or input that is refused below
+        return _turned(_reduced.__wrapped__(piece, modes, times), turn)
 
 
 @lru_cache(maxsize=KEPT, typed=True)
-def _placed(turn: tuple, *arguments: Any) -> ReducedBody:
-    return _turned(_straight(*arguments), turn)
+def _kept(turn: tuple, piece: StraightPiece | AxisPiece, modes: int, times: Times) -> ReducedBody:
+    return _turned(_reduced(piece, modes, times), turn)
 
 
 def _turned(body: ReducedBody, turn: tuple) -> ReducedBody:
-    """A beam along x as it lies in the model; `turn` has the rows of a rotation matrix."""
+    """A beam in its own axes as it lies in the model; `turn` has the rows of a rotation matrix."""
     rotation = np.array(turn)
     return body if np.array_equal(rotation, np.eye(len(turn))) else body.rotated(rotation)
 
 
 @lru_cache(maxsize=KEPT, typed=True)
-def _straight(planar: bool, length: float, section: AnySection, elements: int, modes: int,
-              times: Times) -> ReducedBody:
-    """A beam along x, its section's y axis along y."""
-    body = craig_bampton(_fe_model(planar, length, section, elements), _ends(elements), modes)
+def _reduced(piece: StraightPiece | AxisPiece, modes: int, times: Times) -> ReducedBody:
+    """A part of a beam in its own axes."""
+    body = craig_bampton(piece.fe_model(), _ends(piece.elements), modes)
     return damped(body, times) if times else body
 
 
 def _ends(elements: int) -> list[tuple[int, str]]:
     """The boundary of a beam: its end nodes."""
     return [(0, "full"), (elements, "full")]
-
-
-def _fe_model(planar: bool, length: float, section: AnySection, elements: int) -> FEModel:
-    """A beam along x, its section's y axis along y."""
-    first, last = np.zeros((2, 2 if planar else 3))
-    last[0] = length
-    return (planar_beam(first, last, section, elements) if planar else
-            straight_beam(first, last, section, elements, (0.0, 1.0, 0.0)))

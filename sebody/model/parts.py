@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sebody.basics.tabular import counted, vector
 from sebody.compiler.user_functions import UserFunction
-from sebody.fem.section import AnySection
+from sebody.fem.section_along import AnySection
 from sebody.io.load_series import LoadSeries
 from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
@@ -243,6 +243,7 @@ class Beam(NamedTuple):
     options: Mapping[str, Any]          # the further arguments of `Model.beam`
     parts: tuple[Superelement, ...]
     bodies: tuple[ReducedBody, ...]     # of these parts, as built
+    places: tuple[float, ...]           # of the nodes, from 0 to 1 along the beam
 
     def __repr__(self) -> str:
         return (f"<Beam {self.name!r} from {self.nodes[0].name} to {self.nodes[-1].name}: "

@@ -13,7 +13,7 @@ POINTS = ("position",)
 VECTORS = ("velocity", "acceleration", "displacement", "force", "reaction", "momentum")
 AXIAL = ("angular_velocity", "angular_acceleration", "moment", "reaction_moment")
 SAME = ("t", "torque", "thrust", "power", "work", "kinetic", "strain", "potential",
-        "external_work", "section_forces", "stress", "von_mises",
+        "external_work", "section_forces", "section_strains", "stress", "von_mises",
         "value", "states")      # numbers, or in own axes
 
 

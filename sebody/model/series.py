@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +16,7 @@ from sebody.fem.loads import line_load
 from sebody.fem.model import FEModel
 from sebody.io.load_series import LoadSeries
 from sebody.model.arguments import chosen_name, vector
-from sebody.model.beams import part_models
+from sebody.model.beams import course_of, part_models
 from sebody.model.frames import FRAMES
 from sebody.model.histories import time_function
 from sebody.model.mechanism import Mechanism
@@ -110,7 +111,7 @@ def beam_series(model: Mechanism, beam: str, series: LoadSeries, stations: Array
     inputs.instance(series, f"series on beam {beam!r}", LoadSeries,
                     "give a LoadSeries, as LoadSeries.from_csv makes it")
     direction = vector(model, direction, f"direction of the series on beam {beam!r}")
-    length = float(np.linalg.norm(made.nodes[-1].point - made.nodes[0].point))
+    length = course_of(model, made, made.section).length
     remedy = (f"give {len(series.names)} numbers, one for each column, ascending from 0 to "
               f"{length:.6g}")
     places = inputs.vector(stations, "stations", len(series.names), remedy=remedy)
@@ -157,11 +158,10 @@ def _example(placed: Superelement) -> str:
 def _beam_columns(model: Mechanism, beam: Beam, places: NDArray, direction: NDArray, near: float
                   ) -> Iterator[tuple[Superelement, NDArray]]:
     """Superelements of a beam and their reduced loads of each station alone, (n, stations)."""
-    start = 0.0
-    for part, body, (fe, turn) in zip(beam.parts, beam.bodies, part_models(model, beam),
-                                      strict=True):
-        along = start + fe.coordinates[:, 0]
-        start = float(along[-1])
+    length = course_of(model, beam, beam.section).length
+    for part, body, (fe, turn), span in zip(beam.parts, beam.bodies, part_models(model, beam),
+                                            pairwise(beam.places), strict=True):
+        along = length * np.linspace(*span, len(fe.coordinates))
         for end in (places[0], places[-1]):     # nodes at the ends, but for rounding
             along[np.abs(along - end) < near] = end
         local = turn.T @ direction

@@ -12,7 +12,8 @@ from sebody.reduction.recovery import Recovery
 
 UNITS = {"position": "length", "velocity": "length/time", "acceleration": "length/time^2",
          "displacement": "length", "stress": "force/length^2", "von_mises": "force/length^2",
-         "section_forces": "force, from the fourth on force length"}
+         "section_forces": "force, from the fourth on force length",
+         "section_strains": "1, from the fourth on 1/length"}
 
 
 class FENodes:

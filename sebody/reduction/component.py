@@ -67,6 +67,13 @@ class ComponentModes:
         ])
         return block_diag(boundary, np.diag(self.omega_squared)), reduced_mass
 
+    def project_damping(self, damping: sparse.csc_array) -> NDArray:
+        """Reduced damping (n, n) of an FE matrix of the deformation."""
+        basis = self.basis
+        reduced = basis.T @ (damping @ basis)
+        reduced[self.strainless] = reduced[:, self.strainless] = 0.0
+        return (reduced + reduced.T) / 2
+
     def with_rigid(self, rigid: NDArray, values: NDArray, strainless: NDArray) -> ComponentModes:
         """Constraint modes that make rigid motions (n_dofs, r) of their boundary values (n_b, r).
 

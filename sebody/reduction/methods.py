@@ -143,6 +143,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     if method == "macneal":
         component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
     body = ReducedBody(*reduced, edge.coordinates, edge.keeps, len(component.omega_squared),
+                       damping=None if fe_model.damping is None else
+                       component.project_damping(edge.ties.project(fe_model.damping)),
                        notes=tuple(notes),
                        loads=dict(zip(names, forces.T @ component.basis, strict=True)),
                        missing=missing_of(fe_model, method), materials=fe_model.materials,

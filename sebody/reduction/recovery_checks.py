@@ -79,8 +79,10 @@ def _check_stress(name: str, one: object, count: int, dofs: int, n: int) -> None
         _check(f"{name}.nodes", one.nodes, (None, 2), "iu", below=count)
         elements = len(one.nodes)
         _check(f"{name}.forces", one.forces, (elements, 2, 6, 2 * dofs))
-        _check(f"{name}.fibres", one.fibres, (elements, None, 3, 6))
-        _check(f"{name}.offsets", one.offsets, (elements, one.fibres.shape[1], 2))
+        _check(f"{name}.fibres", one.fibres, (elements, 2, None, 3, 6))
+        _check(f"{name}.offsets", one.offsets, (elements, 2, one.fibres.shape[2], 2))
+        if one.flexibility is not None:
+            _check(f"{name}.flexibility", one.flexibility, (elements, 2, 6, 6))
     elif isinstance(one, SolidStress):
         kind = element_kind(inputs.choice(one.kind, f"recovery.{name}.kind", SOLID_KINDS))
         points, corners = kind.values.shape

@@ -123,7 +123,15 @@ class Field(FieldStates):
         (N, Qy, Qz, Mx, My, Mz) in axes of the section, on the part whose outward normal is the
         beam's axis x: tension is positive.
         """
-        return self.stresses(static).section_forces(self._state(step, t))[0]
+        return self.stresses(static).of_sections(self._state(step, t))[0]
+
+    def section_strains(self, step: int | None = None, t: float | None = None,
+                        static: bool = True) -> NDArray:
+        """Strains of the sections of beams at both ends of the elements, (elements, 2, 6).
+
+        Extension, shear along y and z, rates of twist and of bending about y and z [1, 1/length].
+        """
+        return self.stresses(static).of_sections(self._state(step, t), "section_strains")[0]
 
     def envelope(self, quantity: str = "von_mises", static: bool = True,
                  reference: str | None = None) -> Envelope:

@@ -83,7 +83,12 @@ class FieldPoint:
     @property
     def section_forces(self) -> NDArray:
         """Section forces of the ends of beam elements at the node, (n, ends, 6)."""
-        return self._stresses.section_forces_of_node(self._nodes[0])
+        return self._stresses.sections_of_node(self._nodes[0])
+
+    @property
+    def section_strains(self) -> NDArray:
+        """Strains of the sections at the ends of beam elements at the node, (n, ends, 6)."""
+        return self._stresses.sections_of_node(self._nodes[0], "section_strains")
 
     @property
     def _stresses(self) -> Stresses:

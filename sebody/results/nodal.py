@@ -25,7 +25,8 @@ from sebody.results.postprocessing import Forces
 from sebody.results.recording import Recording
 from sebody.results.stresses import Stresses
 
-MOTIONS, STRESSES = ("position", "velocity", "acceleration"), ("stress", "section_forces")
+MOTIONS = "position", "velocity", "acceleration"
+STRESSES = "stress", "section_forces", "section_strains"
 MISES = "von_mises"
 ROUNDED = 1e-13         # of a coefficient, relative to the values it is a difference of
 # von Mises's stress squared, of the components xx, yy, zz, yz, zx, xy
@@ -101,8 +102,8 @@ class Inside:
     def stress(self, place: int, quantity: str) -> Any:
         """What is linear in amplitudes; the stress of the worst of several fibres of a beam."""
         stresses, amplitudes = self._strained()
-        if quantity == "section_forces":
-            rows = stresses.section_forces_of_node(place)
+        if quantity != "stress":
+            rows = stresses.sections_of_node(place, quantity)
             return self._combined(rows, amplitudes)
         fibres = stresses.fibres_of_node(place)
         if fibres.shape[1] > 1:

@@ -126,7 +126,7 @@ class Stresses:
         """The points of integration, and the nodes of the fibres, in FE axes, (p, D)."""
         coordinates = self._recovery.coordinates
         points = [one.places().reshape(-1, 3) for one in self._solids]
-        points += [np.repeat(coordinates[one.nodes.ravel()], one.fibres.shape[1], axis=0)
+        points += [np.repeat(coordinates[one.nodes.ravel()], one.fibres.shape[2], axis=0)
                    for one in self._beams]
         return np.concatenate(points + [one.points for one in self._modes])
 
@@ -167,12 +167,12 @@ class Stresses:
         """What unit section forces cause in all fibres at a node, (fibres, 6, ends * 6).
 
         Fibres and ends of elements are in the order of `fibres_of_node` and
-        `section_forces_of_node`. None where the stress is that of solid elements.
+        `sections_of_node`. None where the stress is that of solid elements.
         """
         of_solids = [one.nodes for one in self._solids] + [one.nodes for one in self._modes]
         if any((nodes == node).any() for nodes in of_solids):
             return None
-        fibres = [one.fibres[e] for one in self._beams for e in np.nonzero(one.nodes == node)[0]]
+        fibres = [own for one in self._beams for own in one.fibres[one.nodes == node]]
         whole = np.zeros((sum(map(len, fibres)), 6, 6 * len(fibres)))
         first = 0
         for k, own in enumerate(fibres):
@@ -180,21 +180,22 @@ class Stresses:
             first += len(own)
         return whole
 
-    def section_forces_of_node(self, node: int) -> NDArray:
-        """Section forces over time of the element ends at a node, (n, ends, 6)."""
-        rows = [row for values in self._at_ends(node, "section_forces") for row in values]
+    def sections_of_node(self, node: int, what: str = "section_forces") -> NDArray:
+        """Section forces, or section_strains, of the element ends at a node, (n, ends, 6)."""
+        rows = [row for values in self._at_ends(node, what) for row in values]
         if not rows:
             raise InputError(f"body {self._body.name!r} has no beam element at node "
-                             f"{self._recovery.called(node)}, so there are no section forces")
+                             f"{self._recovery.called(node)}, so there are no "
+                             f"{what.replace('_', ' ')}")
         return np.stack([self._history(row) for row in rows], axis=1)
 
-    def section_forces(self, states: NDArray) -> NDArray:
-        """Section forces (N, Qy, Qz, Mx, My, Mz) at both ends, (states, elements, 2, 6)."""
+    def of_sections(self, states: NDArray, what: str = "section_forces") -> NDArray:
+        """Section forces, or section_strains, at both ends, (states, elements, 2, 6)."""
         if not self._beams:
             raise InputError(f"body {self._body.name!r} has no beam elements, so there are no "
-                             "section forces")
+                             f"{what.replace('_', ' ')}")
         moved = self._moved(states)
-        return np.concatenate([one.section_forces(moved) for one in self._beams]).transpose(
+        return np.concatenate([getattr(one, what)(moved) for one in self._beams]).transpose(
             3, 0, 1, 2)
 
     @property
@@ -285,4 +286,5 @@ class Stresses:
     def _refuse_strain(self, what: str) -> None:
         if what == "strain" and not self._solids:
             raise InputError(f"body {self._body.name!r} has no solid elements, so there are no "
-                             "strains: of beams there are section_forces and stress")
+                             "strains: of beams there are section_strains, section_forces and "
+                             "stress")

@@ -160,7 +160,7 @@ def test_stresses_in_fibres_are_those_of_the_section_forces():
     stress = one.stress(u)[..., 0]
     assert stress.shape == (3, 2, 8, 6)
     top = stress[1, 1, 2]       # fibre at z = R
-    assert_allclose(one.offsets[1, 2], [0, 0.05], atol=1e-15)
+    assert_allclose(one.offsets[1, 0, 2], [0, 0.05], atol=1e-15)
     assert_allclose(top, [70 * 4 / (np.pi * 0.05**3), 0, 0, 0, 0, -200 / (np.pi * 0.05**3)],
                     rtol=1e-8, atol=1e-4)
 
@@ -176,7 +176,7 @@ def test_planar_beams_and_frames_of_unlike_sections():
     plain = Section(1e-2, 1e-5, 1e-5, 1e-5, E, NU, RHO)
     mixed = frame([(0, 0, 0), (1, 0, 0)], [(0, 1)],
                   lambda place: plain if place < 0.5 else section, elements=4)
-    assert sorted(one.fibres.shape[:2] for one in mixed.stress) == [(2, 0), (2, 9)]
+    assert sorted(one.fibres.shape[::2][:2] for one in mixed.stress) == [(2, 0), (2, 9)]
 
 
 def test_what_is_refused():

@@ -8,6 +8,7 @@ from sebody import InputError, Model, simulate
 from sebody.analysis import frequency_response, modes
 from sebody.fem import Section, rectangle
 from sebody.model.beam_damping import retardation_times
+from sebody.model.beam_pieces import Course
 from sebody.model.variants import divide, keep_modes, planar
 from sebody.runs.simulation import Simulation
 
@@ -168,7 +169,9 @@ def test_wrong_damping_is_refused(damping, message):
 def test_the_first_clamped_mode_is_that_of_slender_beams_too(thickness):
     """Frequencies of short waves are up to 1e6 times that of a thin strip's first mode."""
     section = rectangle(thickness, 0.02, 2.1e11, 0.3, 7800.0)
-    times = retardation_times((0.02, "clamped 1"), "strip", True, 2.0, section)
+    model = Model(planar=True)
+    ends = model.node("a", (0.0, 0.0)), model.node("b", (2.0, 0.0))
+    times = retardation_times((0.02, "clamped 1"), "strip", Course(model, ends, section))
     first = (CLAMPED / 2.0)**2 * np.sqrt(2.1e11 / 7800.0 / 12.0) * thickness
     assert times[-1] == pytest.approx(2 * 0.02 / first, rel=5e-3)     # shear of the thickest
 

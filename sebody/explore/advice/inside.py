@@ -12,7 +12,7 @@ from sebody.results.result import Result
 
 # quantities that do not depend on the axes of a body; with components those of one side alone
 INSIDE = re.compile(r"(?P<body>.+)\.node(?P<number>\d+)\.(?P<rest>position|velocity|acceleration|"
-                    r"stress|von_mises|section_forces)")
+                    r"stress|von_mises|section_forces|section_strains)")
 MOVING = "position", "velocity", "acceleration"        # which both sides have in common
 
 
@@ -67,7 +67,7 @@ class Places:
         sides = [read(result, one) for one in names]
         if len(sides) == 1 or name.endswith(MOVING):
             return sides[0]
-        if name.endswith("section_forces"):
+        if name.endswith(("section_forces", "section_strains")):
             return np.concatenate(sides, axis=1)
         left, right = ([read(result, f"{one.rpartition('.')[0]}.von_mises") for one in names])
         return np.where((left >= right).reshape(-1, *[1] * (sides[0].ndim - 1)), *sides)

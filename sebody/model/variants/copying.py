@@ -42,7 +42,8 @@ def copied(model: Mechanism) -> Mechanism:
     checked(model)
     elements = (*model.constraints, *model.loads)
     constant: list[object] = [body.reduced for body in model.bodies.values()]
-    constant += [one for beam in model.beams for one in (beam.section, *beam.bodies)]
+    constant += [one for beam in model.beams for one in (
+        beam.section, beam.options["axis"], *beam.bodies)]
     constant += [one for element in elements for one in (
         element.time_function, element.function, element.series) if one is not None]
     constant += [one.law.derivatives for one in model.loads

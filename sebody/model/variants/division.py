@@ -57,7 +57,7 @@ def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None
     divided = beam(made, name, (old.nodes[0], old.nodes[-1]), old.section, elements, bodies,
                    **{**old.options, **options})
     new = made.beams[-1]
-    _start_like(divided, old.nodes)
+    _start_like(new, old)
     ends = max(nodes.index(old.nodes[k].name) for k in (0, -1))
     made.nodes = _in_place(made.nodes, nodes, [n.name for n in divided[1:-1]],
                            nodes.index(between[0].name) if between else ends + 1)
@@ -125,14 +125,15 @@ def _used(model: Mechanism, own: Beam) -> set[Node | DofBlock | None]:
     return used
 
 
-def _start_like(nodes: list[Node], before: tuple[Node, ...]) -> None:
+def _start_like(new: Beam, old: Beam) -> None:
     """Start new nodes with the initial velocities there, linear between the nodes before."""
-    for k, node in enumerate(nodes[1:-1], 1):
-        place = k * (len(before) - 1) / (len(nodes) - 1)
-        first = min(int(place), len(before) - 2)
+    for node, place in zip(new.nodes[1:-1], new.places[1:-1], strict=True):
+        first = int(np.searchsorted(old.places, place, side="right")) - 1
+        low, high = old.places[first:first + 2]
         for kind in ("position", "rotation"):
-            ends: list[DofBlock] = [getattr(before[first + i], kind) for i in (0, 1)]
-            getattr(node, kind).rate = _between(ends[0].rate, ends[1].rate, place - first)
+            ends: list[DofBlock] = [getattr(old.nodes[first + i], kind) for i in (0, 1)]
+            getattr(node, kind).rate = _between(ends[0].rate, ends[1].rate,
+                                                (place - low) / (high - low))
 
 
 def _between(first: NDArray, last: NDArray, part: float) -> NDArray:

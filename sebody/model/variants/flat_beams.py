@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from sebody.fem.beam import section_axes
-from sebody.fem.section import AnySection, StiffnessSection, section_at
+from sebody.fem.section import StiffnessSection
+from sebody.fem.section_along import AnySection, section_at
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam
 from sebody.model.variants.flattening import Flattening
@@ -29,7 +30,7 @@ def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam
             options = {**beam.options, "up": None, "modes": max(p.reduced.modes for p in parts)}
             beams.append(Beam(beam.name, tuple(flat.node(node) for node in beam.nodes),
                               _flat_section(beam, flat), beam.elements, options, parts,
-                              tuple(part.reduced for part in parts)))
+                              tuple(part.reduced for part in parts), beam.places))
     return beams
 
 

@@ -1,0 +1,186 @@
+"""Beams of coupled sections along axes, as superelements: published digits, divisions, refusals."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from sebody import InputError, Model
+from sebody.analysis import equilibrium, modes
+from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, circle
+from sebody.model.variants import divide
+
+LINE = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]]
+
+
+def composite():
+    """Straight, bending and torsion coupled: kynema's static_composite_beam_bending."""
+    K = np.diag([1368.17, 88.56, 38.78, 16.96, 59.12, 141.47]) * 1e3
+    for i, j, value in ((3, 4, 17.61e3), (3, 5, -0.351e3), (4, 5, -0.37e3)):
+        K[i, j] = K[j, i] = value
+    M = np.diag([8.538e-2] * 3 + [1.4433e-2, 0.4097e-2, 1.0336e-2])
+    return (Axis(LINE), GeneralSection(K, M), (0, 0, 150.0),
+            (-0.0902726627566299, -0.0647488486259036, 1.22973648292371))
+
+
+def twisted():
+    """A quarter of a turn of a flat section: kynema's static_twisted_composite_beam_bending."""
+    K = np.diag([2.5e10, 8.2604167e9, 8.2604167e9, 1.41872656e8, 5.20833e8, 1.30208333e8])
+    return (Axis(LINE, twist=[[0, 0], [1, np.pi / 2]]), GeneralSection(K, np.eye(6)),
+            (0, 0, -4e6), (-1.14152599953942, -1.71805334646388, -3.59321324026952))
+
+
+def curved():
+    """A parabola through three points: kynema's static_curved_composite_beam_bending."""
+    x, y = np.array([38.2683, 70.7107]), np.array([-7.61205, -29.2893])
+    slope, bend = np.linalg.solve(np.column_stack([x, x**2]), y)
+    K = np.diag([1e7, 41.6667e5, 41.6667e5, 8.333e5, 8.333e5, 8.333e5])
+    return (Axis(lambda s: [x[1] * s, (slope + bend * x[1] * s) * x[1] * s, 0.0]),
+            GeneralSection(K, np.eye(6)), (0, 0, 600.0),
+            (-23.6459716009047, 13.7208006040058, 53.5776450626987))
+
+
+def cantilever(case, elements, bodies=None, modes=0, turn=None, **options):
+    """Model, and its last node."""
+    axis, section, force = case[:3]
+    R = np.eye(3) if turn is None else turn
+    model = Model()
+    root = model.node("root", R @ axis.position(0.0) + (0.0 if turn is None else [1.0, 2.0, 3.0]))
+    tip = model.node("tip", root.point + R @ (axis.position(1.0) - axis.position(0.0)))
+    if turn is not None:
+        options["rotation"] = R
+    model.beam("beam", (root, tip), section, elements, bodies, modes, axis=axis, **options)
+    model.fix(root)
+    model.force(tip, R @ force)
+    return model, tip
+
+
+def moved(case, *arguments, **options):
+    model, tip = cantilever(case, *arguments, **options)
+    return equilibrium(model, steps=5)["tip.position"][-1] - tip.point
+
+
+def error(u, case):
+    return np.linalg.norm(u - np.array(case[3])) / np.linalg.norm(case[3])
+
+
+@pytest.mark.parametrize(("case", "wanted"), [
+    (composite, 3e-10), (twisted, 1e-7), (curved, 1e-8)])
+def test_published_digits(case, wanted):
+    """Errors of second and fourth order in the length of one-element bodies are extrapolated."""
+    case = case()
+    u = [moved(case, count) for count in (8, 16, 32)]
+    once = [(4 * fine - coarse) / 3 for coarse, fine in zip(u, u[1:], strict=False)]
+    twice = (16 * once[1] - once[0]) / 15
+    assert error(u[2], case) < 2e-4
+    assert error(twice, case) < wanted
+
+
+@pytest.mark.parametrize(("case", "bodies", "wanted"), [
+    (composite, 4, 4e-5), (twisted, 4, 4e-4), (curved, 5, 2e-3)])
+def test_superelements(case, bodies, wanted):
+    assert error(moved(case(), 8 * bodies, bodies, 4), case()) < wanted
+
+
+def test_a_beam_turned_by_rotation_moves_as_before():
+    turn = Rotation.from_rotvec([0.3, -1.1, 2.0]).as_matrix()
+    case = curved()
+    assert_allclose(turn.T @ moved(case, 8, turn=turn), moved(case, 8), rtol=0, atol=1e-6)
+
+
+def softening():
+    """A blade-like beam whose outer tenth is soft."""
+    root = np.diag([1e10, 1e9, 1e9, 2e8, 4e9, 6e9])
+    places = [0.0, 0.3, 0.7, 0.9, 1.0]
+    sections = [GeneralSection(s * root, m * np.diag([500.0] * 3 + [200.0, 50.0, 150.0]))
+                for s, m in ((1, 1), (0.3, 0.5), (0.05, 0.2), (4e-3, 0.08), (1e-5, 0.03))]
+    axis = Axis([[0, 0, 0], [50, 1.0, 0.2], [100, -1.0, 4.0]], twist=[[0, 0.3], [1, 0]])
+    return axis, Stations(places, sections), (0, 0, 1e4)
+
+
+def test_division_by_equal_turning():
+    """Bodies turn equally, as of a linear solution of finer elements, and are exacter so."""
+    case = softening()
+    exact = [moved(case, count, divide="rotation") for count in (12, 24)]
+    exact = (4 * exact[1] - exact[0]) / 3
+    off = {}
+    for how in ("length", "rotation"):
+        u = moved(case, 32, 4, 4, divide=how)
+        off[how] = np.linalg.norm(u - exact) / np.linalg.norm(exact)
+    assert off["rotation"] < off["length"] / 5
+    model, _ = cantilever(case, 32, 4, 4, divide="rotation")
+    beam = model.beams[0]
+    by_places, _ = cantilever(case, 32, 4, 4, divide=beam.places)
+    for one, two in zip(beam.bodies, by_places.beams[0].bodies, strict=True):
+        assert_allclose(one.stiffness, two.stiffness, rtol=1e-12)
+    assert np.diff(beam.places)[-1] < 0.2
+    # a straight uniform beam turns as 2 s - s^2 under a force at its tip
+    plain = Model(planar=True)
+    ends = plain.node("a", (0.0, 0.0)), plain.node("b", (3.0, 4.0))
+    plain.beam("beam", ends, circle(0.01, 2e11, 0.3, 7800.0), 4, 2, divide="rotation")
+    assert_allclose(plain.beams[0].places[1], 1 - np.sqrt(0.5), atol=1e-4)
+    assert_allclose(plain.nodes["beam 1"].point, (1 - np.sqrt(0.5)) * np.array([3, 4]), atol=1e-3)
+
+
+def test_another_division_of_a_beam_along_an_axis():
+    model, _ = cantilever(softening(), 24, 2, 3)
+    other = divide(model, "beam", 4, divide="rotation").model
+    assert [len(one.beams[0].parts) for one in (model, other)] == [2, 4]
+    frequencies = [modes(equilibrium(one, 1)).frequency[:3] for one in (model, other)]
+    assert_allclose(*frequencies, rtol=1e-2)     # elements of other lengths, h^2
+
+
+def test_damping_of_coupled_beams():
+    """A ratio of the first clamped mode of the whole beam, in any division and of any motion."""
+    case = softening()
+    for bodies in (1, 3):
+        model, _ = cantilever((*case[:2], (0, 0, 0)), 24, bodies, 6, damping=(0.02, "clamped 1"))
+        found = modes(equilibrium(model, 1))
+        swings = found.damping < 1.0        # fast modes do not swing
+        omega, ratio = found.omega[swings][:3], found.damping[swings][:3]
+        assert_allclose(ratio / omega, 0.02 / omega[0], rtol=5e-3)
+        assert_allclose(ratio[0], 0.02, rtol=5e-3)
+
+
+def test_retardation_times_of_sections_damp_the_bodies():
+    axis, stations, force = softening()
+    own = Stations(stations.places, [GeneralSection(one.stiffness, one.mass, retardation=0.002)
+                                     for one in stations.sections])
+    model, _ = cantilever((axis, own, force), 24, 3, 4)
+    for part in model.beams[0].parts:
+        K = part.reduced.stiffness
+        assert_allclose(part.reduced.damping, 0.002 * K, rtol=0, atol=1e-9 * np.abs(K).max())
+    with pytest.raises(InputError, match="sections have retardation times of their own"):
+        cantilever((axis, own, force), 24, 3, 4, damping=0.01)
+
+
+def far(model):
+    """Nodes of which the second is elsewhere."""
+    return model.node("a", (0, 0, 0)), model.node("b", (9.0, 0, 0))
+
+
+@pytest.mark.parametrize(("planar", "options", "said"), [
+    (False, {}, r"from node 'a' its axis leads to \(10, 0, 0\), and node 'b' is 1 away: place"),
+    (False, {"up": (0, 1, 0)}, "its axis has its own up"),
+    (False, {"axis": LINE}, "axis of beam 'beam'.* give a sebody.fem.Axis"),
+    (False, {"axis": None, "divide": "turning"}, "divide.*give 'length', 'rotation' or places"),
+    (False, {"axis": None, "divide": [0, 0.5]}, "divide.*3 places from 0 to 1, the ends of 2"),
+    (False, {"axis": None, "divide": [0, 1.5, 1]}, "places that ascend from 0 to 1"),
+    (False, {"axis": None, "damping": (0.1, "hinged 1")}, "are coupled: give 'free 1'"),
+    (True, {}, "an axis is for beams in space"),
+    (True, {"axis": None}, "a GeneralSection is for beams in space"),
+])
+def test_what_is_refused(planar, options, said):
+    model = Model(planar=planar)
+    ends = far(model) if not planar else (model.node("a", (0, 0)), model.node("b", (10.0, 0)))
+    with pytest.raises(InputError, match=said):
+        model.beam("beam", ends, composite()[1], 4, 2, **{"axis": Axis(LINE), **options})
+
+
+def test_stubby_elements_are_nonlinear_beams():
+    """Of short elements of thick sections, too, the frame is the mean of their rotations."""
+    thick = StiffnessSection(1e6, 1e5, 1e5, 1e5, 1.0, 1.0, 0.5, 0.5, 1e5, 1e5)
+    model = Model()
+    model.beam("beam", (model.node("a", (0, 0, 0)), model.node("b", (1.0, 0, 0))), thick, 4)
+    assert {part.frame for part in model.beams[0].parts} == {"converged_mean"}
+    assert not any(part.stiffening for part in model.beams[0].parts)
