@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline, PPoly
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly     # which takes a while to import
 
 DEGREES = (16, 32, 64, 128, 256, 512)   # of the polynomials tried for a function of the user
 SMOOTH = 1e-12          # of its size: what the last coefficients of such a polynomial may have
@@ -69,7 +71,8 @@ class Axis:
                  twist: float | ArrayLike | Callable[[float], float] = 0.0,
                  up: ArrayLike | None = None, side: ArrayLike | None = None,
                  kinks: Sequence[float] = ()):
-        self._pieces = (_of_spline(curve, kinks) if isinstance(curve, PPoly) else
+        spline = _is_spline(curve)
+        self._pieces = (_of_spline(curve, kinks) if spline else
                         _of_function(curve, kinks) if callable(curve) else
                         _of_points(curve, kinks))
         ends = np.cumsum([0.0, *(piece.lengths[-1] for piece in self._pieces)])
@@ -77,7 +80,7 @@ class Axis:
         self._ends = ends / self.length
         self._ends[-1] = 1.0
         given = None
-        if isinstance(curve, PPoly) or not callable(curve):
+        if spline or not callable(curve):
             given = np.unique(np.concatenate([
                 start + piece.lengths / self.length
                 for start, piece in zip(self._ends, self._pieces, strict=False)]).clip(0, 1))
@@ -192,6 +195,8 @@ def _of_points(curve: ArrayLike, kinks: Sequence[float]) -> list[_Piece]:
         raise InputError(f"Axis: points {int(chords.argmin())} and {int(chords.argmin()) + 1} of "
                          "the curve are the same: leave one out")
     u = np.cumsum([0.0, *chords])
+    from scipy.interpolate import CubicSpline
+
     made = []
     for a, b in pairwise([0, *_corners(kinks, len(points)), len(points) - 1]):
         part = slice(a, b + 1)
@@ -210,10 +215,20 @@ def _corners(kinks: Sequence[float], count: int) -> list[int]:
                    for one in inputs.items(kinks, "Axis: kinks", remedy)})
 
 
+def _is_spline(curve: Any) -> bool:
+    if not callable(curve):
+        return False
+    from scipy.interpolate import PPoly
+
+    return isinstance(curve, PPoly)
+
+
 def _of_spline(curve: PPoly, kinks: Sequence[float]) -> list[_Piece]:
     if curve.c.shape[2:] != (3,) or not np.isfinite(curve.c).all():
         raise InputError(f"Axis: curve is a spline of {curve.c.shape[2:]} components: give one of "
                          "three, x, y and z, all finite")
+    from scipy.interpolate import PPoly
+
     slope = curve.derivative()
     made = []
     for a, b in pairwise([0, *_corners(kinks, len(curve.x)), len(curve.x) - 1]):
