@@ -14,7 +14,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 
 if TYPE_CHECKING:
-    from scipy.interpolate import PPoly     # which takes a while to import
+    from scipy.interpolate import PPoly  # which takes a while to import
 
 DEGREES = (16, 32, 64, 128, 256, 512)   # of the polynomials tried for a function of the user
 SMOOTH = 1e-12          # of its size: what the last coefficients of such a polynomial may have
