@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from sebody.runs.restart import resume, save_state
     from sebody.runs.statics import equilibrium
     from sebody.small_motion.campbell import Campbell, campbell
+    from sebody.small_motion.critical_speeds import critical_speeds
+    from sebody.small_motion.crossings import Crossings
     from sebody.small_motion.energy_gain import EnergyGain, energy_gain
     from sebody.small_motion.frequency import FrequencyResponse, frequency_response
     from sebody.small_motion.linearization import (
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
     from sebody.small_motion.random_vibration import RandomResponse, random_response
     from sebody.small_motion.shock import ShockSpectrum, combined, shock_spectrum
     from sebody.small_motion.state_space import StateSpace, state_space
+    from sebody.small_motion.synchronous import SynchronousResponse, synchronous_response
 
 __all__ = [
     "Advice",
@@ -53,6 +56,7 @@ __all__ = [
     "Campbell",
     "Contribution",
     "Contributions",
+    "Crossings",
     "Design",
     "EffectiveMasses",
     "EnergyGain",
@@ -68,6 +72,7 @@ __all__ = [
     "ShockSpectrum",
     "Sizing",
     "StateSpace",
+    "SynchronousResponse",
     "Unreached",
     "ValueAndGradient",
     "Vibrations",
@@ -77,6 +82,7 @@ __all__ = [
     "campbell",
     "combined",
     "contributions",
+    "critical_speeds",
     "effective_masses",
     "energy_gain",
     "equilibrium",
@@ -99,6 +105,7 @@ __all__ = [
     "soft_maximum",
     "spin_limit",
     "state_space",
+    "synchronous_response",
     "vibrations",
 ]
 

@@ -11,6 +11,7 @@ from sebody.model.arguments import chosen_name, direction, dof_block, known
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import TURNS, Element, Node, positions, rotations
 
+BEARINGS = "bushing", "bearing"
 PARALLEL = 1e-6     # one less the cosine of directions that are the same
 
 
@@ -90,8 +91,8 @@ def shaft_direction(model: Mechanism, what: str) -> NDArray:
         There is none, or there are several.
     """
     found = [joint.axis for joint in model.joints if joint.kind in TURNS]
-    found += [load.vector("n") for load in model.loads
-              if load.kind in ("bushing", "bearing") and np.any(load.vector("n"))]
+    found += [axis for load in model.loads if load.kind in BEARINGS
+              for axis in [_of_bearing(load)] if axis is not None]
     if not found:
         raise InputError(f"{what}: no hinge or bearing of the model tells the direction of the "
                          "shaft: give axis=, three numbers")
@@ -100,6 +101,19 @@ def shaft_direction(model: Mechanism, what: str) -> NDArray:
         raise InputError(f"{what}: hinges and bearings of the model have several directions: give "
                          "axis=, three numbers")
     return first * np.sign(first[np.argmax(np.abs(first))])
+
+
+def _of_bearing(bearing: Element) -> NDArray | None:
+    """The axis about which a bearing lets turn freely; none of one that does not tell.
+
+    Where it resists no tilts, the axis along which it resists nothing, if there is one.
+    """
+    if np.any(bearing.vector("n")):
+        return bearing.vector("n")
+    turns, ways = (np.add(*(bearing.vector(name) != 0.0 for name in names))
+                   for names in (("kt", "ct"), ("k", "c")))
+    free = np.flatnonzero(~ways)
+    return None if turns.any() or len(free) != 1 else bearing.vector(f"e{free[0] + 1}")
 
 
 def _across(model: Mechanism, node: Node, axis: ArrayLike | None, what: str) -> NDArray:

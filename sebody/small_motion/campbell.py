@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +10,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
-from sebody.model.arguments import known
 from sebody.model.model import Model
 from sebody.model.parts import Node
-from sebody.pictures.frequency_pictures import save_campbell
-from sebody.runs.rotating_frame import Spin
-from sebody.runs.statics import steady_rotation
-from sebody.runs.turning_parts import parts_of
+from sebody.pictures.frequency_pictures import ORDERS, Diagram, save_campbell
+from sebody.small_motion.crossings import (
+    Crossings,
+    by_interpolation,
+    orders_of,
+    refuse_turning,
+)
 from sebody.small_motion.linearization import Modes, modes_in
-from sebody.small_motion.rotation.views import FRAMES, decided
+from sebody.small_motion.mode_tables import damping_ratios
+from sebody.small_motion.rotation.speeds import Rotations
+from sebody.small_motion.rotation.whirls import whirls
+
+SEEN = 1e-3         # of the highest frequency: that of a crossing that is marked
+HEADS = ("mode", "whirl", "[Hz] at {} rad/s", "[Hz] at {} rad/s", "largest real part [1/s]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +44,18 @@ class Campbell:
         How far rounding may move the values: a growth below it is none [1/time].
     frame, reason : str
         The axes in which the motion is told, and why these: see `modes`.
+    whirl : (m, count) of str
+        ``forward``, ``backward``, ``mixed`` where some nodes run forward and others backward, or
+        ``none`` of motion along a line or about the axis.
     """
 
     speeds: NDArray
     omega: NDArray
     growth: NDArray
     rounding: NDArray
-    frame: str = "turning"
-    reason: str = ""
+    frame: str
+    reason: str
+    whirl: NDArray
 
     def __repr__(self) -> str:
         return tabular.text(*self._table())
@@ -57,29 +68,74 @@ class Campbell:
         first, last = (f"{speed:.6g}" for speed in (self.speeds[0], self.speeds[-1]))
         title = (f"{self.omega.shape[1]} modes at {len(self.speeds)} speeds from {first} to {last} "
                  f"rad/s, in {self.frame} axes" + f" ({self.reason})" * bool(self.reason))
-        heads = "mode", f"[Hz] at {first} rad/s", f"[Hz] at {last} rad/s", "largest real part [1/s]"
+        heads = tuple(head.format(speed) for head, speed in zip(
+            HEADS, ("", "", first, last, ""), strict=True))
         hertz = self.omega / (2 * np.pi)
         growths = np.where(np.abs(self.growth) > self.rounding, self.growth, 0.0)
         return title, heads, [
-            (str(k + 1), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}", f"{growth.max():.4g}")
+            (str(k + 1), self._sense(k), f"{hertz[0, k]:.6g}", f"{hertz[-1, k]:.6g}",
+             f"{growth.max():.4g}")
             for k, growth in enumerate(growths.T)]
 
-    def save_picture(self, path: str | Path) -> Path:
-        """Draw frequencies and real parts of eigenvalues over the speed: png, pdf or svg.
+    def _sense(self, k: int) -> str:
+        """The whirl of a mode over the speeds."""
+        return " to ".join(dict.fromkeys(self.whirl[1:, k]))
+
+    @property
+    def damping(self) -> NDArray:
+        """Parts of critical damping, (m, count); NaN of rigid motions."""
+        return np.array([damping_ratios(one) for one in self.growth + 1j * self.omega])
+
+    def crossings(self, orders: ArrayLike = (1.0,)) -> Crossings:
+        """Speeds at which a frequency is a multiple of the speed, as the diagram shows them.
+
+        Between its speeds frequencies are cubics; `critical_speeds` finds exact values.
+
+        Parameters
+        ----------
+        orders : sequence of float
+            The multiples.
 
         Raises
         ------
         InputError
-            A picture that cannot be made.
+            Orders that are not positive, or frequencies that are told in turning axes.
         """
-        return save_campbell(path, self.speeds, self.omega, self.growth)
+        refuse_turning(self.frame, self.reason)
+        return by_interpolation(self.speeds, self.growth + 1j * self.omega, self.whirl,
+                                orders_of(orders))
+
+    def save_picture(self, path: str | Path, orders: ArrayLike = ORDERS) -> Path:
+        """Draw frequencies and real parts of eigenvalues over the speed: png, pdf or svg.
+
+        Lines tell the whirls, colours the damping; dashed are the multiples `orders` of the speed,
+        with a dot where one crosses a frequency that is told in standing axes.
+
+        Raises
+        ------
+        InputError
+            A picture that cannot be made, or orders that are not positive.
+        """
+        multiples = orders_of(orders)
+        return save_campbell(path, *self.drawn(multiples))
+
+    def drawn(self, orders: NDArray) -> tuple[Diagram, NDArray, NDArray]:
+        """What pictures show: the diagram, orders, and the crossings with them that are marked."""
+        marked = np.zeros((0, 2))
+        if self.frame != "turning":
+            found = self.crossings(orders)
+            vibrates = found.omega > SEEN * self.omega.max()
+            marked = np.column_stack([found.speeds, found.omega])[vibrates]
+        return (Diagram(self.speeds, self.omega, self.growth, self.damping, self.whirl, self.frame),
+                orders, marked)
 
 
 def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, count: int = 8,
              steps: int = 4, frame: str = "auto", hub: Node | str | None = None) -> Campbell:
     """Campbell diagram of a model of which parts, or which as a whole, rotate steadily.
 
-    At every speed the equilibrium of the rotation is found, and the modes about it.
+    At every speed the equilibrium of the rotation is found, and the modes about it. Unbalances are
+    left out: to the first order they change neither.
 
     Parameters
     ----------
@@ -87,7 +143,8 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
     speeds : (m,)
         Angular velocities, at least two, ascending [1/time].
     axis : (3,), optional
-        Axis of rotation in space; none in a plane.
+        Axis of rotation in space, by default that of the model's hinges and bearings; none in a
+        plane.
     count : int
         Lowest modes at the first speed to follow.
     steps : int
@@ -99,50 +156,36 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
     Raises
     ------
     InputError
-        Speeds that do not ascend, no axis, fewer modes than `count`, or axes in which the matrices
-        are not constant.
+        Speeds that do not ascend, no axis or several, fewer modes than `count`, or axes in which
+        the matrices are not constant.
     SimulationError
         A speed without an equilibrium.
     """
-    inputs.instance(model, "model", Model, "give a Model")
     speeds = inputs.vector(speeds, "speeds")
     if len(speeds) < 2 or not np.all(np.diff(speeds) > 0):
         raise InputError("speeds must ascend, at least two of them: give them in order")
     count = inputs.integer(count, "count", least=1)
-    frame = inputs.choice(frame, "frame", FRAMES)
-    own = None if hub is None else known(model, hub)
-    unit = parts_of(model, Spin(_direction(model, axis), model.planar), own)
     fastest = speeds[np.argmax(np.abs(speeds))]
-    decision = decided(model, unit.times(fastest), frame, own)
-    rows: list[Modes] = []
+    rotations = Rotations(model, axis, fastest, frame, hub, steps, "Campbell diagram")
+    rows, names = [], []
     for speed in speeds:
-        spin = unit.times(speed)
-        rows.append(modes_in(steady_rotation(model, steps, spin), replace(decision, spin=spin)))
+        run, view = rotations.at(speed)
+        rows.append(modes_in(run, view))
+        names.append(whirls(rotations.model, rows[-1], rotations.unit.times(np.sign(speed) or 1.0)))
     if len(rows[0].values) < count:
         raise InputError(f"count is {count}, but there are {len(rows[0].values)} modes: ask for "
                          "fewer")
     chosen = [np.arange(count)]
     for last, now in zip(rows, rows[1:], strict=False):
-        chosen.append(_followed(last, chosen[-1], now))
-    values, rounding = (np.array([of[own] for of, own in zip(each, chosen, strict=True)])
-                        for each in ([one.values for one in rows], [one.rounding for one in rows]))
-    return Campbell(speeds, values.imag, values.real, rounding, decision.frame, decision.reason)
+        chosen.append(followed(last, chosen[-1], now))
+    values, rounding, senses = (
+        np.array([of[own] for of, own in zip(each, chosen, strict=True)])
+        for each in ([one.values for one in rows], [one.rounding for one in rows], names))
+    return Campbell(speeds, values.imag, values.real, rounding, rotations.view.frame,
+                    rotations.view.reason, senses)
 
 
-def _direction(model: Model, axis: ArrayLike | None) -> NDArray:
-    """The axis of rotation, of unit length."""
-    if model.planar:
-        return np.array(1.0)
-    if axis is None:
-        raise InputError("in space a Campbell diagram needs axis=, three numbers")
-    direction = inputs.vector(axis, "axis", 3)
-    length = np.linalg.norm(direction)
-    if not length > 0.0:
-        raise InputError("axis has no length: give its direction")
-    return direction / length
-
-
-def _followed(last: Modes, own: NDArray, now: Modes) -> NDArray:
+def followed(last: Modes, own: NDArray, now: Modes) -> NDArray:
     """The modes most like those of the last speed, by shape and by value."""
     from scipy.optimize import linear_sum_assignment  # takes 0.1 s to import
 

@@ -29,7 +29,7 @@ from sebody.small_motion.given_state import state_of
 from sebody.small_motion.linearization import small_motion, warn_of_spin
 from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.small_motion.rotation.azimuths import steady
-from sebody.small_motion.rotation.views import view
+from sebody.small_motion.rotation.views import View, view
 
 HEADS = "quantity", "largest amplitude", "phase [deg]", "at [Hz]"
 
@@ -133,14 +133,9 @@ def frequency_response(run: Simulation | Result | Model, load: str, quantities: 
         if spin is None:
             warn_of_spin(run, np.abs(omega), "a harmonic response")
         forces, push = by_amplitude(run, _load(run, load))
-        X = _answers(matrices, axes.pushed(run, push), omega)
-        w = 1j * omega[:, None]
-        along = moves(run, axes, *(np.concatenate([z.real, z.imag]) for z in (X, w * X, w**2 * X)))
-        pushed = np.zeros((2 * len(omega), forces.size))
-        pushed[:len(omega)] = forces            # the load is real
-        return FrequencyResponse(load, omega, {
-            name: values[:len(omega)] + 1j * values[len(omega):]
-            for name, values in differences(run, names, along, pushed).items()})
+        X = harmonic_motions(matrices, axes.pushed(run, push), omega)
+        return FrequencyResponse(load, omega, harmonic_quantities(
+            run, axes, names, X, omega, np.tile(forces, (len(omega), 1))))
 
 
 def _load(run: Simulation | Result, name: str) -> Element:
@@ -174,8 +169,34 @@ def by_amplitude(run: Simulation | Result, load: Element) -> tuple[NDArray, NDAr
     return forces, -residual[:run.numbering.free]
 
 
-def _answers(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> NDArray:
-    """Responses of the unknowns, (m, unknowns)."""
+def harmonic_quantities(run: Simulation | Result, axes: View, names: Iterable[str], X: NDArray,
+                        omega: NDArray, forces: NDArray) -> dict[str, NDArray]:
+    """Complex amplitudes of quantities, (m, ...) each.
+
+    Parameters
+    ----------
+    X : (m, unknowns) complex
+        Motions of the unknowns.
+    omega : (m,)
+        Their angular frequencies.
+    forces : (m, forces of all elements)
+        Change of the forces of elements beside what the motions make.
+    """
+    w = 1j * omega[:, None]
+    along = moves(run, axes, *(np.concatenate([z.real, z.imag]) for z in (X, w * X, w**2 * X)))
+    pushed = np.concatenate([forces.real, forces.imag])
+    return {name: values[:len(omega)] + 1j * values[len(omega):]
+            for name, values in differences(run, list(names), along, pushed).items()}
+
+
+def harmonic_motions(matrices: tuple[NDArray, ...], push: NDArray, omega: NDArray) -> NDArray:
+    """Responses of the unknowns to harmonic forces, (m, unknowns).
+
+    Raises
+    ------
+    InputError
+        A response is infinite.
+    """
     mass, damping, stiffness = matrices
     # unknowns of different units: rows and columns of one size, for the judgment of solvability
     size = np.sqrt(np.abs(stiffness).max(axis=1) + np.abs(mass).max(axis=1))

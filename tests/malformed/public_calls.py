@@ -81,6 +81,17 @@ def shafts() -> Model:
     return model
 
 
+def bearing() -> Model:
+    """A disc out of balance in a bearing along x."""
+    model = Model()
+    ball, ground = model.node("ball", (0.0, 0.0, 0.0)), model.node("ground", (0.0, 0.0, 0.0))
+    model.rigid_body("disc", ball, 2.0, (0.1, 0.1, 0.1))
+    model.fix(ground)
+    model.bushing(ground, ball, (50.0, 40.0, 30.0), turning_stiffness=(0.0, 40.0, 30.0))
+    model.unbalance(ball, 0.1)
+    return model
+
+
 @cache
 def damped() -> Simulation:
     """A ball on a spring and a damper, with a load."""
@@ -137,6 +148,12 @@ ANALYSIS = {
     "campbell": Call(an.campbell, lambda: {
         "model": shafts(), "speeds": [0.0, 1.0], "axis": (0.0, 0.0, 1.0), "count": 2, "steps": 2,
         "frame": "auto", "hub": None}),
+    "critical_speeds": Call(an.critical_speeds, lambda: {
+        "model": bearing(), "axis": None, "orders": [1.0], "count": 3, "fastest": 9.0, "steps": 1,
+        "frame": "auto", "hub": None}),
+    "synchronous_response": Call(an.synchronous_response, lambda: {
+        "model": bearing(), "speeds": [1.0, 2.0], "quantities": "ball.position", "axis": "x",
+        "steps": 1, "frame": "auto", "hub": None}),
     "equilibrium": Call(an.equilibrium, lambda: {
         "model": pendulum(), "steps": 2, "t": 0.0, "tolerance": 1e-9, "spin": None,
         "unstable": "leave"}),

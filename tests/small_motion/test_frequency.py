@@ -157,26 +157,27 @@ def drawn(monkeypatch, draw):
     return found[0]
 
 
-def test_a_campbell_diagram_has_a_legend(monkeypatch):
-    """A line of its own kind for each mode, the same in both parts, and multiples of the speed."""
-    pytest.importorskip("matplotlib")
-    speeds, count = np.linspace(0.0, 50.0, 6), 11
+def test_a_campbell_diagram_tells_whirls_and_damping(monkeypatch):
+    """Coloured by damping, red below zero, with marks of whirls, orders and crossings."""
+    to_rgba = pytest.importorskip("matplotlib.colors").to_rgba
+    speeds, count = np.linspace(0.0, 50.0, 6), 3
     omega = 10.0 * np.arange(1, count + 1) + 0.5 * speeds[:, None]
+    damping = np.tile((0.1, 0.0, -0.02), (6, 1))
+    whirl = np.tile(np.array(["forward", "none", "backward"]), (6, 1))
     figure = drawn(monkeypatch, lambda: frequency_pictures.save_campbell(
-        "a.png", speeds, omega, 0 * omega))
-    upper, lower = figure.axes
+        "a.png", frequency_pictures.Diagram(speeds, omega, -damping * omega, damping, whirl,
+                                            "standing"),
+        np.array([1.0, 2.0]), np.array([[20.0, 20.0]])))
+    upper, lower, bar = figure.axes
     names = [text.get_text() for text in upper.get_legend().get_texts()]
-    assert names == [f"mode {k}" for k in range(1, count + 1)]
-
-    def look(line):
-        return line.get_color(), line.get_linestyle(), str(line._dash_pattern)
-    modes = upper.lines[:count]
-    assert len({look(line) for line in modes}) == count
-    assert [look(line) for line in lower.lines[:count]] == [look(line) for line in modes]
-    orders = upper.lines[count:]
-    assert [line.get_ydata()[-1] for line in orders] == [50.0, 100.0, 150.0]
-    assert {text.get_text() for text in upper.texts} == {"1 x speed", "2 x speed", "3 x speed"}
-    assert upper.get_ylabel() == "angular frequency [rad/time]"
+    assert names == ["forward whirl", "backward whirl"]
+    lines = [one for one in upper.collections if len(one.get_array()) == 5]
+    colours = [tuple(one.to_rgba(one.get_array()[:1])[0]) for one in lines]
+    assert len(set(colours)) == count
+    assert colours[2] == to_rgba(frequency_pictures.GROWING)
+    assert {text.get_text() for text in upper.texts} == {"1 x speed", "2 x speed"}
+    assert upper.get_title(loc="left") == "natural frequencies in standing axes"
+    assert bar.get_ylabel() == "damping ratio"
     assert lower.get_ylabel() == "real part [1/time]"
 
 
@@ -209,7 +210,7 @@ def test_pictures_and_what_a_diagram_refuses(tmp_path):
     with pytest.raises(InputError, match="quantity of the response 'tip' is unknown: use 'weight"):
         response["tip"]
     for arguments, message in ((([1.0], (0, 0, 1)), "speeds must ascend, at least two of them"),
-                               (([0.0, 1.0],), "in space a Campbell diagram needs axis="),
+                               (([0.0, 1.0],), "Campbell diagram: no hinge or bearing"),
                                (([0.0, 1.0], (0, 0, 0)), "axis has no length"),
                                (([0.0, 1.0], (0, 0, 1), 9), "count is 9, but there are 3 modes")):
         with pytest.raises(InputError, match=message):
