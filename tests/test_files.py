@@ -4,6 +4,7 @@ import os
 import resource
 import signal
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -136,3 +137,22 @@ def test_an_index_is_below_the_length_it_points_into():
         with pytest.raises(InputError) as caught:
             table.read(Arrays(places=places, at=wrong))
         assert str(caught.value) == said
+
+
+def test_what_a_killed_writer_left_long_ago_is_removed(tmp_path):
+    """By the next writer of this file; what others write, or what is being written, stays."""
+    own, other = tmp_path / "a.npz", tmp_path / "b.npz"
+    left, entered = [], []
+    for path, age in ((own, 7200.0), (own, 60.0), (other, 7200.0)):
+        writer = replacing(path, "output file")
+        writer.__enter__()
+        part, = set(parts(tmp_path)) - set(left)
+        os.utime(part, (time.time() - age,) * 2)
+        left.append(part)
+        if len(left) == 1:
+            os.utime(part, (time.time(),) * 2)      # the next writer comes soon
+        entered.append(writer)
+    os.utime(left[0], (time.time() - 7200.0,) * 2)
+    with replacing(own, "output file") as file:
+        file.write(b"whole")
+    assert own.read_bytes() == b"whole" and set(parts(tmp_path)) == set(left[1:])

@@ -50,6 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0, 1 when a run or a check fails or a file cannot be written, 2 when the input cannot be
         used; 130, 143 and 141 as of a command that Ctrl-C, SIGTERM or a closed pipe has ended.
     """
+    _open_streams()
     try:
         try:
             with interrupts.watched(), warnings.catch_warnings():
@@ -66,6 +67,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _mute(1)
 
 
+def _open_streams() -> None:
+    """Let what a closed standard stream would get go nowhere: Python has None in its place."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w"))
+
+
 def _run(arguments: Sequence[str] | None) -> int:
     options, others = _parser().parse_known_args(arguments)
     if others:
@@ -75,6 +83,10 @@ def _run(arguments: Sequence[str] | None) -> int:
     except SebodyError as error:
         print(f"error: {error}", file=sys.stderr)
         return 2 if isinstance(error, InputError) else 1
+    except MemoryError as error:
+        print(f"error: memory ran out{f': {error}' if str(error) else ''}; take a smaller model or "
+              "mesh, keep fewer states (--every), or allow more memory", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return interrupts.exit_code() or interrupts.ENDED_BY + signal.SIGINT

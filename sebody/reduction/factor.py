@@ -170,18 +170,28 @@ def _factorise(stiffness: sparse.csc_array, name: Callable[[int], str], remedy: 
     ratios = np.ones(len(diagonal))
     if np.all(diagonal > 0):
         try:
-            factor = _lu(matrix)
+            factor = _within_memory(matrix)
             if len(diagonal) > _SMALL and _softest(factor, diagonal) > _SUSPECT:
                 return factor
         except RuntimeError:        # a pivot of exactly zero: find it beside a touch of stiffness
             touch = sparse.diags_array(_SINGULAR / 10 * diagonal, format="csc")
-            factor = _lu(matrix + touch)
+            factor = _within_memory(matrix + touch)
         ratios = factor.U.diagonal()[factor.perm_c] / diagonal
         if ratios.min() > _SINGULAR:
             return factor
     raise InputError(
         "S_II is singular: with the boundary clamped the body can still move without strain (a "
         f"mechanism inside): {_suspects(stiffness, ratios, name)}; {remedy}")
+
+
+def _within_memory(matrix: sparse.csc_array) -> SuperLU:
+    try:
+        return _lu(matrix)
+    except MemoryError as error:
+        raise InputError(
+            f"the factors of the stiffness of {matrix.shape[0]} unknowns do not fit into memory: "
+            "allow more, take a coarser mesh, or a solver that stores less (factor=, or pypardiso "
+            "where it is installed)") from error
 
 
 def _lu(matrix: sparse.csc_array) -> SuperLU:

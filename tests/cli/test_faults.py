@@ -123,6 +123,26 @@ def test_a_reader_that_stops_reading(tmp_path, monkeypatch):
     assert (tmp_path / "out.npz").exists() and (tmp_path / "state.npz").exists()
 
 
+@pytest.mark.parametrize("closed", [">&-", ">&- 2>&-"])
+def test_closed_streams_take_nothing_and_hinder_nothing(tmp_path, closed):
+    """As services and `>&-` in a shell start a command: Python has no streams then."""
+    command = (f"exec {sys.executable} -m sebody run heavy-top --t-end 0.01 --output "
+               f"{tmp_path / 'out.npz'} {closed}")
+    done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, text=True, timeout=120)
+    assert done.returncode == 0 and "Traceback" not in done.stderr
+    assert (tmp_path / "out.npz").exists()
+
+
+def test_memory_that_runs_out_is_said(capsys, monkeypatch):
+    def build_scene(*given):
+        raise MemoryError("Unable to allocate 7.45 GiB")
+    monkeypatch.setattr(run, "build_scene", build_scene)
+    assert main(["run", "hinged-beam"]) == 1
+    assert capsys.readouterr().err == (
+        "error: memory ran out: Unable to allocate 7.45 GiB; take a smaller model or mesh, keep "
+        "fewer states (--every), or allow more memory\n")
+
+
 def test_a_full_disk_behind_the_standard_output(monkeypatch, capsys):
     with open("/dev/full", "w") as full:
         monkeypatch.setattr(sys, "stdout", full)

@@ -179,6 +179,8 @@ def test_stresses_of_masses_and_springs_are_not_missed(decks):
     ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", r"\*ELASTIC, TYPE=ORTHO has 2 numbers: give 9"),
     (SECTION, "*ORIENTATION, NAME=O\n1,0,0,2,0,0\n" + SECTION, "which define no axes: give two"),
     (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 4, 0\n" + SECTION, "the step of GENERATE is 0"),
+    (SECTION, "*ELSET, ELSET=A, GENERATE\n1, 2000000000\n" + SECTION,
+     "GENERATE from 1 to 2000000000 makes 2000000000 labels, more than"),
     ("3, 9, 13, 15, 11, 10, 14, 16, 12", "3, 9, 11, 15, 13, 10, 12, 16, 14",
      "element 3 of the deck is inverted or has no volume: correct the order"),
     (SECTION, "*TIE, NAME=T\nLEFT, NEAR\n" + SECTION, r"\*TIE of surface NEAR, which does not "

@@ -123,3 +123,13 @@ def test_the_real_pardiso_agrees(monkeypatch):
     body = reduce(BLOCK, [(mean, "full")], 3)
     assert "factored by PARDISO" in body.summary()
     np.testing.assert_allclose(body.mass, expected.mass, atol=1e-8 * np.abs(expected.mass).max())
+
+
+def test_factors_that_do_not_fit_into_memory_are_named(monkeypatch):
+    def fails(matrix):
+        raise MemoryError
+    monkeypatch.setattr(factor, "_lu", fails)
+    left = MeanFace(nodes_on_plane(BLOCK, [1, 0, 0], [1, 0, 0]))
+    with pytest.raises(InputError, match=r"factors of the stiffness of \d+ unknowns do not fit "
+                                         "into memory: allow more, take a coarser mesh, or a sol"):
+        craig_bampton(BLOCK, [(left, "full")], 2)

@@ -2,14 +2,18 @@
 
 import os
 import shutil
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 from uuid import uuid4
+from zlib import crc32
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, WriteError
+
+LEFT = 3600.0           # seconds since something was written to a file that nobody completes
 
 
 def check_target(path: str | Path, what: str, suffixes: tuple[str, ...] = ()) -> Path:
@@ -64,6 +68,7 @@ def replacing(path: str | Path, what: str) -> Iterator[BinaryIO]:
     """
     path = Path(path).resolve()         # a link stays a link
     part = _beside(path)
+    _sweep(path)
     try:
         with part.open("xb") as file:
             yield file
@@ -84,4 +89,19 @@ def replacing(path: str | Path, what: str) -> Iterator[BinaryIO]:
 
 def _beside(path: Path) -> Path:
     """A new name in the folder of a file, not longer than names may be."""
-    return path.with_name(f".sebody-{uuid4().hex[:16]}.part")
+    return path.with_name(f"{_prefix(path)}{uuid4().hex[:16]}.part")
+
+
+def _prefix(path: Path) -> str:
+    """What names of unfinished files of a path begin with."""
+    return f".sebody-{crc32(path.name.encode()):08x}-"
+
+
+def _sweep(path: Path) -> None:
+    """Remove unfinished files of this path that were left long ago by a process that was killed."""
+    try:
+        for part in path.parent.glob(f"{_prefix(path)}*.part"):
+            if time.time() - part.stat().st_mtime > LEFT:
+                part.unlink(missing_ok=True)
+    except OSError:         # another process removes it, or the folder cannot be listed
+        return

@@ -4,6 +4,8 @@ from collections.abc import Iterable, Iterator
 
 from sebody.io.deck.cards import Card, Row, plain_name
 
+MOST_LABELS = 20_000_000        # of a line with GENERATE
+
 
 class Sets:
     """Named sets of labels, whose members may be other sets, defined before or behind them.
@@ -84,4 +86,8 @@ def _generated(row: Row, words: list[str]) -> range:
     first, last, step = [*(row.label(word) for word in words), 1][:3]
     if step < 1:
         raise row.fault(f"the step of GENERATE is {step}", "give a positive step")
-    return range(first, last + 1, step)
+    labels = range(first, last + 1, step)
+    if len(labels) > MOST_LABELS:
+        raise row.fault(f"GENERATE from {first} to {last} makes {len(labels)} labels, more than "
+                        f"{MOST_LABELS}", "name labels that the mesh has")
+    return labels
