@@ -107,3 +107,26 @@ def stopped_bar() -> Model:
     (stopped_bar, "rigid bodies alone"), (lambda: rolling(0.3, 1.0), "eight at a time")])
 def test_the_ensemble_says_how_its_runs_are_made(build, reason):
     assert reason in repr(Ensemble(build(), 2e-3))
+
+
+def test_the_outcome_says_how_its_runs_were_made(monkeypatch):
+    """A damping that follows from a restitution, not in proportion, wants another model."""
+    beam, ball = linkage(), Model(planar=True)
+    ball.rigid_body("ball", ball.node("centre", (0.3, 0.2)), 1.0, 0.1)
+    for made, node in ((beam, "tip"), (ball, "centre")):
+        made.contact(node, plane((0.1, 1.0), point=(0.0, -3.0)), stiffness=1e5, name="floor")
+
+    def told(model, name):
+        outcome = Ensemble(model, 2e-3).run({name: np.linspace(0.3, 0.9, RUNS)}, 0.02,
+                                            {"end": final("energy.kinetic")})
+        title = repr(outcome).splitlines()[0]
+        assert title.endswith(f"one by one: {outcome.why_one_by_one}" if outcome.why_one_by_one
+                              else f"{outcome.in_lanes} of them eight at a time")
+        return outcome.in_lanes, outcome.why_one_by_one
+    assert told(beam, "floor.stiffness") == (0, f"fewer than {ensemble.WORTH_IT} steps in all")
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    assert told(beam, "motor.amplitude") == (RUNS, "")
+    assert told(beam, "floor.restitution") == (
+        0, "with these parameters the model is built anew for each run")
+    assert told(ball, "ball.mass") == (
+        0, "elements that keep numbers, as contacts and friction, among rigid bodies alone")

@@ -58,18 +58,17 @@ def matrices_at_once(template: Simulation) -> bool:
             and not any(takes_one_member(name) for name in kernels_of(template.model)))
 
 
-def can_be_together(image: Image) -> bool:
-    """Whether runs with some parameters can be made eight at a time, if those of the model can.
-
-    Not if the model is built anew for each run, or members differ in what lanes have in common.
-    """
+def why_parameters_part(image: Image) -> str:
+    """Why runs with some parameters are made one by one, where the model allows eight at a time."""
     if not image.linear:
-        return False
+        return "with these parameters the model is built anew for each run"
     from sebody.engine.lanes.arrays import shared_places  # imports the lanes
 
     one, slots = image.template, image.lines.slots
-    return not any(np.any((slots >= part.start) & (slots < part.stop))
-                   for part in shared_places(one.system, one.state, image.offsets))
+    if any(np.any((slots >= part.start) & (slots < part.stop))
+           for part in shared_places(one.system, one.state, image.offsets)):
+        return "these parameters change what runs made eight at a time have in common"
+    return ""
 
 
 def kernels_of(model: Model) -> list[str]:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
-from sebody.explore.ensembles.choice import WORTH_IT, can_be_together, why_one_by_one
+from sebody.explore.ensembles.choice import WORTH_IT, why_one_by_one, why_parameters_part
 from sebody.explore.ensembles.outcome import Outcome
 from sebody.explore.ensembles.start_values import Image
 from sebody.explore.ensembles.work import Work, processors
@@ -75,7 +75,8 @@ class Ensemble:
 
     def __repr__(self) -> str:
         reason = why_one_by_one(self._template)
-        how = f"one by one: {reason}" if reason else "eight at a time if they are many"
+        how = (f"one by one: {reason}" if reason else
+               "eight at a time if they are many and their parameters allow it")
         return f"<Ensemble of a {summary(self.model)}: step {self.h:.6g}; runs {how}>"
 
     @property
@@ -153,9 +154,11 @@ class Ensemble:
             outcome.failures |= refused(self.model, found, values, runs)
         began = time.perf_counter()
         image = self._image(tuple(parameters), found)
-        in_lanes = (max(runs, of) * last >= WORTH_IT and not why_one_by_one(self._template)
-                    and can_be_together(image))
-        work = Work(self._template, image, values, kept, read, last, outcome, self._lock, in_lanes)
+        few = (f"fewer than {WORTH_IT} steps in all" if max(runs, of) * last < WORTH_IT else "")
+        outcome.why_one_by_one = (few or why_one_by_one(self._template)
+                                  or why_parameters_part(image))
+        work = Work(self._template, image, values, kept, read, last, outcome, self._lock,
+                    not outcome.why_one_by_one)
         with showing(progress) as show:
             work.go(min(threads, max(runs, 1)), show)
         outcome.seconds = time.perf_counter() - began

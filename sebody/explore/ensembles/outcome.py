@@ -31,6 +31,8 @@ class Outcome:
         Time of all runs together, set-up apart.
     in_lanes : int
         How many runs were made eight at a time; all others were made one by one.
+    why_one_by_one : str
+        The reason, where all were.
     """
 
     values: dict[str, NDArray]
@@ -40,6 +42,7 @@ class Outcome:
     interrupted: bool = False
     seconds: float = 0.0
     in_lanes: int = 0
+    why_one_by_one: str = ""
 
     def __repr__(self) -> str:
         return tabular.text(*self._table())
@@ -51,7 +54,9 @@ class Outcome:
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
         """Every output with the smallest, mean and largest value of the runs that have one."""
         failed = f", {len(self.failures)} of them did not reach the end" * bool(self.failures)
-        title = f"{tabular.counted(self.runs, 'run')}{failed}, {self.seconds:.3g} s"
+        how = (f", one by one: {self.why_one_by_one}" if self.why_one_by_one else
+               f", {self.in_lanes} of them eight at a time")
+        title = f"{tabular.counted(self.runs, 'run')}{failed}, {self.seconds:.3g} s{how}"
         rows = []
         for name, value in self.values.items():
             known = value[np.isfinite(value)]
