@@ -212,6 +212,28 @@ def test_a_bent_tube_of_a_quarter_circle():
     assert_allclose(moved, exact, rtol=1e-8)
 
 
+@pytest.mark.parametrize("pitch", [0.02, 0.3])
+def test_a_helical_spring(pitch):
+    """Castigliano of a load on the axis of the coil; G d^4 / (8 D^3 n) where it is not steep.
+
+    The wire bears P R cos(a) of torsion, P R sin(a) of bending, P sin(a) and P cos(a) of forces.
+    """
+    D, d, turns, E, nu = 0.06, 0.005, 4.25, 2.06e11, 0.3
+    section = replace(circle(d / 2, E, nu, 7850.0), shear_factor=0.9)
+    axis = Axis(lambda s: [D / 2 * np.cos(2 * np.pi * turns * s),
+                           D / 2 * np.sin(2 * np.pi * turns * s), pitch * turns * s])
+    own, a = section.stiffnesses, np.arctan2(pitch, np.pi * D)
+    exact = axis.length * ((D / 2)**2 * (np.cos(a)**2 / own.torsion + np.sin(a)**2 / own.bending_y)
+                           + np.sin(a)**2 / own.axial + np.cos(a)**2 / own.shear_y)
+    model = beam_along(axis, section, 34)
+    arm = np.array([0.0, 0.0, pitch * turns]) - axis.position(1.0)
+    moved = tip(model, np.r_[0, 0, 1.0, np.cross(arm, [0, 0, 1.0])])[-6:]
+    found = moved[2] + np.cross(moved[3:], arm)[2]
+    assert_allclose(found, exact, rtol=1e-8)
+    simple = 8 * D**3 * turns / (E / (2 + 2 * nu) * d**4)
+    assert abs(found / simple - 1) < (0.01 if pitch < 0.1 else 0.9)
+
+
 def test_damping_follows_the_retardation_times():
     """Equal times: mu K to rounding; others: sqrt(mu) K sqrt(mu), reduced with the body."""
     axis, section = hard()

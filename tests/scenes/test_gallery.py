@@ -5,12 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody import Result, simulate
+from sebody.analysis import equilibrium
 from sebody.catalogue import scenes
 from sebody.scenes import (
     ball_on_beam,
+    blade,
     gripper,
+    helical_spring,
     imported_link,
     journal_clearance,
     starter,
@@ -107,3 +111,32 @@ def test_the_starter_lifts_its_load():
     assert result["energy.potential"][-1] - result["energy.potential"][0] == pytest.approx(
         lifted, rel=2e-3)
     assert result["motor.work"][-1] == pytest.approx(lifted, rel=0.03)      # it still vibrates
+
+
+def test_a_helical_spring_has_the_stiffness_of_its_formula():
+    """G d^4 / (8 D^3 n), with half the weight of the wire; unwinding as it is stretched."""
+    scene = helical_spring.build()
+    E, nu, density = helical_spring.STEEL
+    d, D = 0.005, helical_spring.DIAMETER
+    stiffness = E / (2 + 2 * nu) * d**4 / (8 * D**3 * 4)
+    wire = np.pi / 4 * d**2 * density * helical_spring.helix(4.0).length
+    rest = equilibrium(scene.model)
+    fallen = scene.model.nodes["weight"].point - rest["weight.position"][-1]
+    assert abs(fallen[2] / ((2.0 + wire / 2) * 9.81 / stiffness) - 1) < 0.01
+    result = run(scene, 0.1)
+    lowest = result["weight.position"][:, 2].min() - scene.model.nodes["weight"].point[2]
+    assert abs(-lowest / (2 * fallen[2]) - 1) < 0.03        # some of it is damped
+    assert rest["weight.rotation"][-1][1, 0] > 1e-3         # the helix turns about z, downwards
+
+
+def test_four_bodies_of_a_blade_move_as_nonlinear_beams():
+    """Within 1 % of how far the tip is bent from the place of a rigid blade."""
+    tips = []
+    for options in ({}, {"bodies": 32, "modes": 0}):
+        scene = blade.build(**options)
+        result = run(scene, 6.0)
+        tips.append(result["tip.position"])
+    turns = Rotation.from_rotvec(np.outer(result["hub.angle"], [1.0, 0, 0]))
+    bent = np.abs(tips[1] - turns.apply(scene.model.nodes["tip"].point)).max()
+    assert bent > 0.05
+    assert np.abs(tips[0] - tips[1]).max() < 0.01 * bent
