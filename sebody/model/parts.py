@@ -12,6 +12,7 @@ from sebody.basics.tabular import counted, vector
 from sebody.compiler.user_functions import UserFunction
 from sebody.fem.section_along import AnySection
 from sebody.io.load_series import LoadSeries
+from sebody.model.bearing_tables import BearingTable
 from sebody.model.time_functions import TimeFunction
 from sebody.reduction import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
@@ -194,6 +195,8 @@ class Element:
     law: LawParts | None = None             # of a continuous controller
     series: LoadSeries | None = None    # of a load on a body: of the columns of its loads
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`
+    table: BearingTable | None = None   # of the speed, of a bearing
+    read_at: float | None = None        # the speed at which its coefficients are from the table
     dof_blocks: tuple[DofBlock, ...] = field(init=False)       # those of the places
 
     def __post_init__(self) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.model.arguments import chosen_name, known
+from sebody.model.bearing_tables import BearingTable
 from sebody.model.hinges import about, check_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
@@ -89,7 +92,9 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
             stiffness: ArrayLike = 0.0, damping: ArrayLike = 0.0,
             turning_stiffness: ArrayLike = 0.0, turning_damping: ArrayLike = 0.0,
             rotation: ArrayLike | None = None, name: str | None = None,
-            axis: ArrayLike | None = None) -> Element:
+            axis: ArrayLike | None = None,
+            table: Mapping[str, ArrayLike] | str | Path | None = None,
+            speed: float | None = None) -> Element:
     """Springs and dampers along and about axes that turn with `node`, between nodes at one point.
 
     Each coefficient is a number, or one for each axis. Moments follow the sine of the angles:
@@ -112,19 +117,32 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     axis : (3,), optional
         Direction of a shaft, instead of `rotation`: the third axis. The first two are across it in
         the order of space: y and z of a shaft along x.
+    table : mapping of str to (m,) array_like, or path of a CSV file
+        Instead of stiffness and damping those across the shaft by its speed, columns ``frequency``
+        (rad/time; or ``rpm``), ``kxx``, ``kxy``, ``kyx``, ``kyy``, ``cxx``, ``cxy``, ``cyx``,
+        ``cyy``; ``kyy`` and ``cyy`` are those of x where they are left out, others none. Equilibria
+        with a spin and analyses over the speed read the table at the speed of the shaft.
+    speed : float, optional
+        At which the table is read once for all, as runs over time need [rad/time].
 
     Raises
     ------
     InputError
         Coefficients that are negative, matrices whose symmetric part is not positive, no rotation,
-        or nodes that do not coincide.
+        nodes that do not coincide, or a table that is wrong, or has not this speed.
     """
     a, b = pair(model, node, to, "bushing")
     check_together(model, a, b, "bushing")
     turn = _bushing_axes(model, a, rotation, axis)
+    rows = None
+    if table is not None:
+        rows, stiffness, damping = _of_table(a, table, speed, stiffness, damping)
+    elif speed is not None:
+        raise InputError(f"bushing at {a.name!r}: speed= is that at which a table is read: give "
+                         "table=, or leave it out")
     numbers = {"k": _Coefficients.of(model, a, "stiffness", stiffness, turning_stiffness),
                "c": _Coefficients.of(model, a, "damping", damping, turning_damping)}
-    coupled = any(np.any(one.across) for one in numbers.values())
+    coupled = rows is not None or any(np.any(one.across) for one in numbers.values())
     constants: dict[str, float | NDArray] = {}
     for key, one in numbers.items():
         constants |= {key: one.along, f"{key}t": one.about}
@@ -133,8 +151,60 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     constants |= {f"e{k}": column for k, column in enumerate(turn.T, 1)}
     if not model.planar:
         constants["n"] = _free_axis(turn, *numbers.values())
-    return _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants,
+    made = _add(model, name, "bushing", a, positions(a, b) + rotations(a, b), constants,
                 "bearing" if coupled else "bushing")
+    made.table = rows
+    return made
+
+
+def table_constants(table: BearingTable, speed: float, bearing: Element
+                    ) -> dict[str, float | NDArray]:
+    """Constants of a bearing by its table at a speed.
+
+    Raises
+    ------
+    InputError
+        A speed outside the table.
+    """
+    found: dict[str, float | NDArray] = {}
+    for key, matrix in zip("kc", table.at(speed, bearing.name), strict=True):
+        along = np.array(bearing.vector(key))
+        along[:2] = np.diag(matrix)
+        found |= {key: along, f"{key}12": matrix[0, 1], f"{key}21": matrix[1, 0]}
+    return found
+
+
+def by_tables(model: Mechanism) -> list[Element]:
+    """Bearings whose coefficients are tables."""
+    return [load for load in model.loads if load.table is not None]
+
+
+def refuse_tables(model: Mechanism) -> None:
+    """Refuse bearings by tables that have not been read at a speed.
+
+    Raises
+    ------
+    InputError
+        The message names the first.
+    """
+    for bearing in by_tables(model):
+        if bearing.read_at is None:
+            raise InputError(f"{bearing.name!r} has a table of the speed, which a run over time "
+                             "does not follow: give bushing(..., speed=), at which it is read")
+
+
+def _of_table(a: Node, table: Mapping[str, ArrayLike] | str | Path, speed: float | None,
+              stiffness: ArrayLike, damping: ArrayLike
+              ) -> tuple[BearingTable | None, NDArray, NDArray]:
+    """The table, none if a speed is given; stiffness and damping at it, else at the lowest."""
+    what = f"bushing at {a.name!r}: table"
+    if np.any(stiffness) or np.any(damping):
+        raise InputError(f"{what} has stiffness and damping: leave out these arguments")
+    rows = BearingTable.of(table, what)
+    if speed is None:
+        return rows, *rows.at(rows.speeds[0], f"bushing at {a.name}")
+    speed = inputs.number(speed, f"bushing at {a.name!r}: speed", least=0)
+    return None, *rows.at(speed, f"bushing at {a.name}")
 
 
 class _Coefficients(NamedTuple):

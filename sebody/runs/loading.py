@@ -75,7 +75,7 @@ class Loading:
         # whether all motions have a stiffness without the loads
         self._unstable = False      # what is kept
         self._tried = -1.0          # share of the load at which leaving the path was tried
-        still = Spin.of(run, None)
+        still = Spin.of(run.model, None)
         self._unit = pace(run, still) if self.judged else 0.0
         if not np.isfinite(self._unit):
             self._unit = 0.0
@@ -255,7 +255,7 @@ class Loading:
         soft = Stiffness(self.run, tangent, self._unit).softest()
         state.now[:] = self.run.rows.stretches[0][0]
         self.load(0.0)
-        still = Spin.of(self.run, None)
+        still = Spin.of(self.run.model, None)
         first = Stiffness(self.run, linear(self.run, still, None)[0], self._unit).softest()
         state.now[:] = now
         return self._name(soft.motion) if soft.stiffness < LOST * first.stiffness else ""

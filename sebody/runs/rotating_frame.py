@@ -23,6 +23,7 @@ from sebody.assembly.axes import in_frames
 from sebody.basics import inputs
 from sebody.basics.vectors import skew
 from sebody.contract.layout import AT_FRAME, AT_POSITIONS
+from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import coordinates
 from sebody.model.parts import DofBlock
 from sebody.results.result import Result
@@ -44,15 +45,15 @@ class Spin:
         self.velocity, self.planar, self.parts = velocity, planar, parts
 
     @classmethod
-    def of(cls, run: Simulation | Result, velocity: ArrayLike | None) -> Spin:
-        """The spin a user gives, none by default.
+    def of(cls, model: Mechanism, velocity: ArrayLike | None) -> Spin:
+        """The spin of a model that a user gives, none by default.
 
         Raises
         ------
         InputError
             The wrong shape or no numbers.
         """
-        planar = run.model.planar
+        planar = model.planar
         if velocity is None:
             velocity = 0.0 if planar else np.zeros(3)
         return cls(np.array(inputs.number(velocity, "spin", remedy="give a number")) if planar else

@@ -20,6 +20,7 @@ from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, Stat
 from sebody.engine.system import System
 from sebody.model.control_order import misspelt
 from sebody.model.model import Model
+from sebody.model.springs import refuse_tables
 from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
@@ -112,6 +113,8 @@ class Simulation:
         tolerance = given(tolerance)
         threads = checked_threads(threads)
         user_faults.refuse_changed(model)
+        if self.gives_loads_to_steps:
+            refuse_tables(model)
         prepare([model])
         self.grid = Grid(self.h, tolerance is None) if self.gives_loads_to_steps else None
         self.system, self.numbering = build(model, threads, self.grid)

@@ -14,6 +14,7 @@ from sebody.model.model import Model
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 from sebody.results.static_summary import static_residuals
+from sebody.runs.bearing_speeds import copied_for_reading, read_tables
 from sebody.runs.loading import CHOICES, Loading
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import pace
@@ -58,7 +59,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     Raises
     ------
     InputError
-        Not a positive number of steps, a spin of the wrong shape.
+        Not a positive number of steps, a spin of the wrong shape, or one outside a bearing's table.
     SimulationError
         No equilibrium is found, or one that only the model has, in which bodies without geometric
         stiffening fold up under tension; what was found before is in its `result`.
@@ -69,10 +70,11 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     unstable = inputs.choice(unstable, "unstable", CHOICES)
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
     _refuse_states(model)
-    run = _at_rest(model, t)
-    given = Spin.of(run, spin)
-    return _equilibrium(run, parts_of(model, given) if given.rotates else given, steps, tolerance,
-                        unstable)
+    given = Spin.of(model, spin)
+    model = copied_for_reading(model)
+    whole = parts_of(model, given) if given.rotates else given
+    read_tables(model, whole)
+    return _equilibrium(_at_rest(model, t), whole, steps, tolerance, unstable)
 
 
 def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
@@ -109,7 +111,7 @@ def _at_rest(model: Model, t: float) -> Simulation:
         run.state.q[run.system.is_multiplier[:run.state.q.size] > 0] = 0.0
         return run
     # bristles as stiff as loads move the model by this in a step: of its own time, not of units
-    still = Spin.of(run, None)
+    still = Spin.of(run.model, None)
     squares = [pace(run, still)]
     run.state.loads[:], run.state.coefficients[FIELD:] = 0.0, 0.0       # but springs pull
     squares.append(pace(run, still))

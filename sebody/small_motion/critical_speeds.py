@@ -37,7 +37,7 @@ def critical_speeds(model: Model, axis: ArrayLike | None = None, orders: ArrayLi
         How many of the lowest vibrations at rest are followed.
     fastest : float, optional
         Highest speed; by default half more than the highest of these frequencies at rest, over the
-        lowest order [1/time].
+        lowest order, or where tables of bearings end [1/time].
     steps : int
         Load steps of each equilibrium.
     frame, hub
@@ -46,9 +46,9 @@ def critical_speeds(model: Model, axis: ArrayLike | None = None, orders: ArrayLi
     Returns
     -------
     Crossings
-        The frequency is the imaginary part of the damped eigenvalue. Unbalance excites forward
-        whirls, backward ones where supports are not isotropic, and no vibrations along and about
-        the axis.
+        Above the slowest speed that all tables of bearings have. The frequency is the imaginary
+        part of the damped eigenvalue. Unbalance excites forward whirls, backward ones where
+        supports are not isotropic, and no vibrations along and about the axis.
 
     Raises
     ------
@@ -66,11 +66,11 @@ def critical_speeds(model: Model, axis: ArrayLike | None = None, orders: ArrayLi
                           "critical speeds")
     refuse_turning(rotations.view.frame, rotations.view.reason)
     search = _Search(rotations)
-    still = search.at(0.0).omega
+    still = search.at(rotations.slowest).omega
     vibrations = np.flatnonzero(still > FREE * still.max())[:count] - len(still)
     if fastest is None:
-        fastest = BEYOND * still[vibrations].max() / multiples.min()
-    speeds = np.linspace(0.0, fastest, SAMPLES + 1)
+        fastest = min(BEYOND * still[vibrations].max() / multiples.min(), rotations.fastest)
+    speeds = np.linspace(rotations.slowest, fastest, SAMPLES + 1)
     return Crossings.sorted(
         (*search.crossing(k, order, between), int(k - vibrations[0]))
         for k in vibrations for order in multiples

@@ -284,6 +284,14 @@ LOADS = {
             "1", None, 1j, NAN, -1.0, (1.0, 2.0), (1.0, 1.0, -1.0), ("1", "1", "1"))]
            for name in ("stiffness", "damping", "turning_stiffness", "turning_damping")},
         "to": [itself, apart]}),
+    "bearing by a table": Right(Model.bushing, {
+        "node": "a", "to": "c", "table": {"frequency": [1.0, 2.0], "kxx": [3.0, 4.0]},
+        "speed": 1.5}, {
+            "table": have("bushing at 'a': table", 3, {}, {"kxx": [1.0, 2.0]},
+                          {"frequency": [1.0, NAN], "kxx": [3.0, 4.0]}),
+            "speed": [*[pair for pair in are("bushing at 'a': speed", *NO_NUMBER, -1.0)
+                        if pair[0] is not None],
+                      (9.0, "bushing at a' has a table for speeds from 1 to 2")]}),
     "drive_angle": Right(Model.drive_angle, {"node": "a", "motion": TABLE, "to": "c"}, {
         "node": nodes(lacks_turn), "axis": given(axis("drive")),
         "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], [(1, 0), (0, 1)]),

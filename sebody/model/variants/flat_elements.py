@@ -52,6 +52,9 @@ def flat_element(flat: Flattening, element: Element) -> Element:
     if element.function is not None:
         raise InputError(f"{element.name!r} is a function of yours, whose symmetry is unknown: "
                          "build the planar model by hand")
+    if element.table is not None:
+        raise InputError(f"{element.name!r} has a table of the speed: build the planar model with "
+                         "it by hand, or give bushing(..., speed=)")
     if element.kind not in ELEMENTS:
         raise InputError(f"{element.name!r} {_unknown(element.kind, 'ELEMENTS')}")
     kind, constants = ELEMENTS[element.kind](flat, element)

@@ -1,7 +1,7 @@
 """Steady rotations of a model at one speed after another, in axes of one kind.
 
-Unbalances are left out: to the first order they change no frequency, and with them the matrices are
-constant in no axes.
+Bearings by tables are read at every speed. Unbalances are left out: to the first order they change
+no frequency, and with them the matrices are constant in no axes.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from sebody.model.parts import Element, Node
 from sebody.model.shafts import shaft_direction, unbalances
 from sebody.model.variants.copying import copied
 from sebody.results.result import Result
+from sebody.runs.bearing_speeds import limits, read_tables
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.statics import steady_rotation
 from sebody.runs.turning_parts import parts_of
@@ -35,6 +36,11 @@ class Rotations:
         Speed at which the axes are decided on [1/time].
     what : str
         The analysis, for messages.
+
+    Attributes
+    ----------
+    slowest, fastest : float
+        Between which tables of bearings lie; from zero without any.
     """
 
     def __init__(self, model: Model, axis: ArrayLike | None, fastest: float, frame: str,
@@ -46,7 +52,10 @@ class Rotations:
         self.unbalances, self.model = _apart(model)
         own = None if name is None else self.model.nodes[name]
         self.unit = parts_of(self.model, Spin(_direction(model, axis, what), model.planar), own)
-        self.view = decided(self.model, self.unit.times(fastest), frame, own)
+        self.slowest, self.fastest = limits(self.model, self.unit)
+        size = min(max(abs(fastest), self.slowest), self.fastest)
+        read_tables(self.model, self.unit.times(size))
+        self.view = decided(self.model, self.unit.times(np.copysign(size, fastest)), frame, own)
 
     def at(self, speed: float) -> tuple[Result, View]:
         """The steady rotation at a speed, and the axes in which motion about it is told.
@@ -57,6 +66,7 @@ class Rotations:
             There is no equilibrium.
         """
         spin = self.unit.times(speed)
+        read_tables(self.model, spin)
         return steady_rotation(self.model, self._steps, spin), replace(self.view, spin=spin)
 
 

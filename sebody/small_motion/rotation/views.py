@@ -22,6 +22,7 @@ from sebody.model.arguments import known
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Node
 from sebody.results.result import Result
+from sebody.runs.bearing_speeds import check_read
 from sebody.runs.rotating_frame import Spin, Turning, motion
 from sebody.runs.simulation import Simulation
 from sebody.runs.turning_parts import parts_of, unloaded
@@ -148,14 +149,17 @@ def view(run: Simulation | Result, spin: ArrayLike | None, frame: str = "auto",
         A wrong spin, or a frame in which the matrices are not constant.
     """
     frame = inputs.choice(frame, "frame", FRAMES)
-    given = Spin.of(run, spin)
+    given = Spin.of(run.model, spin)
     if not given.rotates:
+        check_read(run.model, given)
         if spin is None and frame != "auto":
             raise InputError(f"frame={frame!r} is of a steady rotation: give spin=, its angular "
                              "velocity")
         return View("", "", given)
     own = None if hub is None else known(run.model, hub)
-    return decided(run.model, parts_of(run.model, given, own), frame, own)
+    whole = parts_of(run.model, given, own)
+    check_read(run.model, whole)
+    return decided(run.model, whole, frame, own)
 
 
 def decided(model: Model, spin: Spin, frame: str, hub: Node | None = None) -> View:
