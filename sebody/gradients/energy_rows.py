@@ -5,7 +5,9 @@ With the forces g of the elements (residuals) and their mass matrix M of a posit
     strain      U_q = g(q, 0, 0) without gravity
     potential   V_q = g(q, 0, 0) - g(q, 0, 0) without gravity
     kinetic     T = v M v / 2:  T_v = M v,  T_q = v M_q v / 2
-    momentum    P = r M v:      P_v = M r,  P_q = r M_q v,  r a motion of all positions by one
+    momentum    P = r M v:      P_v = M r,  P_q = r M_q v + r_q M v,  r a motion of all positions
+                                by one; of angular momentum a rotation about an axis by one, of
+                                positions ``e x x``, of rotations in their own axes ``R^T e``
 
 where ``M w = g(q, 0, w) - g(q, 0, 0)``, and ``w M_q v`` is the difference of the products of w with
 the stiffness at the accelerations v and none, `sebody.gradients.products`.
@@ -52,7 +54,8 @@ class EnergyRows(Arrays):
     wanted      (energies,) 1 for each of `layout.ENERGIES` whose derivatives are asked for
     massive     (batches,) 1 where elements have mass
     elastic     (batches,) 1 where they have strain energy
-    moves       (1 + 3, total) velocities, and motions of all positions by one along the axes
+    moves       (1 + 6, total) velocities, and motions of all by one along and about the axes
+    points      first coordinates of positions
     rows        (2, energies, total) written: derivatives by the motion and its rates
     kept        (3, total) of the state: rates, second rates, then gravity
     loose       (total,) forces at rest; without gravity
@@ -63,6 +66,7 @@ class EnergyRows(Arrays):
     massive: NDArray
     elastic: NDArray
     moves: NDArray
+    points: NDArray
     rows: NDArray
     kept: NDArray
     loose: NDArray
@@ -74,13 +78,14 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
     Raises
     ------
     NoTape
-        Moments of momentum and powers; strain energy of elements that keep numbers.
+        Powers; strain energy of elements that keep numbers.
     """
-    if any(MOMENT <= place < MOMENT + AXES or place > POTENTIAL for place in places):
-        raise NoTape("moments of momentum and powers")
+    if any(place > POTENTIAL for place in places):
+        raise NoTape("powers")
     system, total = run.system, run.numbering.total
     wanted = np.zeros(POTENTIAL + 1, dtype=np.int64)
     wanted[places] = 1
+    wanted[KINETIC] |= wanted[MOMENT:MOMENT + AXES].any()       # which gives ``M v``
     massive, elastic = np.zeros((2, system.address.size), dtype=np.int64)
     for owner, first in run.numbering.forces_at.items():
         b = int(np.searchsorted(system.at_g, first, side="right")) - 1
@@ -93,13 +98,18 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
         elastic[b] = bare and not owner.multipliers and not kernel.INERTIAL
         if elastic[b] and kernel.MEMORY not in ((), ("angle",)) and wanted[STRAIN]:
             raise NoTape("strain energies of contacts")
-    moves = np.zeros((1 + AXES, total))
+    moves, points = np.zeros((1 + 2 * AXES, total)), []
     for block, first in run.numbering.dof_blocks.items():
-        if not block.rotational and not block.name.endswith(".states"):
+        if block.rotational:
+            if run.model.planar:
+                moves[2 * AXES, first] = 1.0
+        elif not block.name.endswith(".states"):
+            points.append(first)
             for i in range(block.start.size):
                 moves[1 + i, first + i] = 1.0
-    return EnergyRows(wanted, massive, elastic, moves, np.zeros((2, POTENTIAL + 1, total)),
-                      np.zeros((3, max(total, AXES))), np.zeros(total))
+    return EnergyRows(wanted, massive, elastic, moves, np.array(points, dtype=np.int64),
+                      np.zeros((2, POTENTIAL + 1, total)), np.zeros((3, max(total, AXES))),
+                      np.zeros(total))
 
 
 @compiled
@@ -144,7 +154,7 @@ def _of_positions(system, state, energies):
 def _of_masses(system, state, products, energies):
     """Kinetic energy and momentum."""
     any_wanted = energies.wanted[KINETIC]
-    for i in range(AXES):
+    for i in range(2 * AXES):
         any_wanted |= energies.wanted[MOMENTUM + i]
     if any_wanted == 0:
         return OK
@@ -152,7 +162,8 @@ def _of_masses(system, state, products, energies):
     for i in range(loose.size):
         loose[i] = 0.0
     status = _add_forces(system, state, energies.massive, -1.0, loose)
-    for m in range(1 + AXES):
+    _rotate(system, state, energies)
+    for m in range(1 + 2 * AXES):
         place = KINETIC if m == 0 else MOMENTUM + m - 1
         if energies.wanted[place] == 1 and status == OK:
             for i in range(loose.size):
@@ -165,13 +176,49 @@ def _of_masses(system, state, products, energies):
         for i in range(loose.size):
             state.a[i] = moves[0, i] if part == 0 else 0.0
         status = _prepare(system, state, products, energies.massive)
-        for m in range(1 + AXES):
+        for m in range(1 + 2 * AXES):
             place = KINETIC if m == 0 else MOMENTUM + m - 1
             if energies.wanted[place] == 1:
                 factor = (0.5 if m == 0 else 1.0) * (1.0 if part == 0 else -1.0)
                 _add_products(system, state, products, energies.massive, moves[m], factor,
                               rows[0, place])
+    _add_rotations(system, state, energies)
     return status
+
+
+@compiled
+def _rotate(system, state, energies):
+    """Set the motions of all by a rotation about each axis through the origin."""
+    moves = energies.moves
+    for k in range(AXES):
+        one, other = (k + 1) % AXES, (k + 2) % AXES
+        if system.dimension[0] == 2 and k < 2:
+            continue
+        for i in energies.points:
+            moves[1 + AXES + k, i + one] = -state.q[i + other]
+            moves[1 + AXES + k, i + other] = state.q[i + one]
+        for r in range(system.rotation_at.size):
+            for i in range(AXES):
+                moves[1 + AXES + k, system.rotation_at[r] + i] = state.R[9 * r + 3 * k + i]
+
+
+@compiled
+def _add_rotations(system, state, energies):
+    """Add to angular momenta what these motions change with the state, times the momenta."""
+    rows, p = energies.rows, energies.rows[1, KINETIC]
+    for k in range(AXES):
+        place, one, other = MOMENT + k, (k + 1) % AXES, (k + 2) % AXES
+        if energies.wanted[place] == 0 or (system.dimension[0] == 2 and k < 2):
+            continue
+        for i in energies.points:
+            rows[0, place, i + one] += p[i + other]
+            rows[0, place, i + other] -= p[i + one]
+        for r in range(system.rotation_at.size):
+            x = system.rotation_at[r]
+            for i in range(AXES):
+                j, m = (i + 1) % AXES, (i + 2) % AXES
+                rows[0, place, x + i] += (p[x + j] * state.R[9 * r + 3 * k + m]
+                                          - p[x + m] * state.R[9 * r + 3 * k + j])
 
 
 @compiled

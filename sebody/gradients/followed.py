@@ -20,6 +20,7 @@ from sebody.contract.read_numbers import (
     ENERGY,
     FORCE,
     LOAD,
+    MOTION,
     NOW,
     OF_A,
     OF_FORCE,
@@ -35,6 +36,7 @@ from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
 from sebody.gradients.link_products import place_weights, pull_back_bars
+from sebody.gradients.motion_rows import add_motion_rows, motion_rows, set_motion_rows
 from sebody.gradients.products import Products, prepare, turn
 from sebody.kernels.tapes import play_back
 from sebody.quantities.reading import evaluate_loaded
@@ -46,7 +48,7 @@ from sebody.runs.simulation import Simulation
 
 MOVED = 1e-3            # change of kept numbers that shows which quantities depend on them
 ROUNDING = 1e-12
-DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD, ENERGY}
+DIFFERENTIATED = {NOW, FORCE, TOTAL, LOAD, ENERGY, MOTION}
 
 
 class Rows(NamedTuple):
@@ -78,8 +80,6 @@ class Followed:
         self.run, self.quantity = run, quantity
         self.linear, self.history = linear, history
         states = States(run.model, run.numbering, run.system, run.state, history.rows[0])
-        if states.is_inside(quantity):
-            raise NoTape("motions inside bodies")
         states.put(quantity)
         kinds = states.kinds
         if not kinds <= DIFFERENTIATED:
@@ -93,6 +93,8 @@ class Followed:
         energies = [place for kind, place in states.tape.inputs if kind == ENERGY]
         self.energies = energy_rows(run, energies) if energies else None
         self.reading = states.reading()
+        self.motions = motion_rows(run, self.reading, states.moving, states.resting) if (
+            MOTION in kinds) else None
         self.places = states.depends()
         steady = not states.tape.steps and not linear.followers and np.isin(
             self.places[:, 0], (OF_Q, OF_V, OF_A)).all()
@@ -115,6 +117,8 @@ class Followed:
         if status == OK and products is not None and self.energies is not None:
             status = _follow_energies(linear.system, linear.state, self.reading, products,
                                       self.energies, rows)
+        if status == OK and self.motions is not None:
+            status = _follow_motions(linear.system, linear.state, self.reading, self.motions, rows)
         if status != OK or not np.isfinite(rows).all():
             raise InputError(f"quantity {self.quantity!r} has no derivative at t = "
                              f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
@@ -233,6 +237,24 @@ def _follow_energies(system, state, reading, products, energies, out):
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, found)
         out[:, c] += found
+    return status
+
+
+@compiled
+def _follow_motions(system, state, reading, motions, out):
+    """Add what outputs depend on by motions of bodies, as `_follow_energies`."""
+    status = set_motion_rows(system, state, reading, motions)
+    w = np.zeros(out.shape[2])
+    found = np.zeros((3, 1, out.shape[2]))
+    for c in range(out.shape[1]):
+        bars = np.zeros(reading.numbers.size)
+        bars[reading.outputs[c]] = 1.0
+        play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
+        found[:] = 0.0
+        add_motion_rows(reading, motions, bars, found, 0)
+        if system.links.dependent.shape[0] > 0:
+            pull_back_bars(system, state, w, found[:, 0])
+        out[:, c] += found[:, 0]
     return status
 
 

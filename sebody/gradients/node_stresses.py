@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.fem.stress import von_mises
+from sebody.gradients.followed import Followed
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
-from sebody.gradients.sensors import Evaluated, Rows, Sensor
+from sebody.gradients.sensors import Evaluated, Rows, Sensor, smoothly
 from sebody.quantities.inside import FENodes
 from sebody.quantities.names import NORM, STRESS, split
 from sebody.results.field_quantities import fe_node
@@ -36,7 +37,7 @@ class NodeStress:
 
     Parameters
     ----------
-    smooth : Evaluated
+    smooth : Followed or Evaluated
         Section forces of the element ends at the node, or the stress of solids.
     operator : (fibres, 6, components of `smooth`)
         Stresses in the fibres.
@@ -44,7 +45,8 @@ class NodeStress:
         Of the recorded states.
     """
 
-    def __init__(self, smooth: Evaluated, operator: NDArray, recording: Recording, quantity: str):
+    def __init__(self, smooth: Followed | Evaluated, operator: NDArray, recording: Recording,
+                 quantity: str):
         self.smooth, self.operator, self.quantity = smooth, operator, quantity
         self.whole, components = split(recording, quantity)
         self.component = components[0] if components else None
@@ -116,11 +118,9 @@ def node_stress(run: Simulation, quantity: str, linear: Linear, history: History
     if what not in QUANTITIES or node not in FENodes(recording):
         return None
     operator = fe_node(recording, node).fibres_by_section_forces
-    if operator is None:
-        return NodeStress(Evaluated(run, f"{node}.stress", 6, linear, history), np.eye(6)[None],
-                          recording, quantity)
-    smooth = Evaluated(run, f"{node}.section_forces", operator.shape[2], linear, history)
-    return NodeStress(smooth, operator, recording, quantity)
+    smooth, size = ("stress", 6) if operator is None else ("section_forces", operator.shape[2])
+    return NodeStress(smoothly(run, f"{node}.{smooth}", size, linear, history),
+                      np.eye(6)[None] if operator is None else operator, recording, quantity)
 
 
 def history_of(sensor: Sensor, recording: Recording, quantity: str) -> NDArray:

@@ -14,14 +14,12 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.gradients.followed import Followed
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.node_stresses import history_of, node_stress
 from sebody.gradients.segments import Segments
-from sebody.gradients.sensors import Evaluated, Sensor, rotation_vector
+from sebody.gradients.sensors import Sensor, rotation_vector, smoothly
 from sebody.gradients.sweeps import Bars
-from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs.outputs import Fold, Output, forms, outputs_of
@@ -223,10 +221,7 @@ def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Li
         return vector
     if (stress := node_stress(run, quantity, linear, history)) is not None:
         return stress
-    try:
-        return Followed(run, quantity, linear, history)
-    except NoTape:
-        return Evaluated(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)
+    return smoothly(run, quantity, int(np.prod(shape, initial=1.0)), linear, history)
 
 
 def _seeds(name: str, one: Output, t: NDArray, first: int, values: NDArray, value: NDArray

@@ -12,6 +12,7 @@ from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.kernels.rotations import inverse_tangent_coefficients
 from sebody.quantities.names import AXES, NORM
+from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up, rotation_vectors
 from sebody.results.recording import Recording
 from sebody.results.result import Result
@@ -89,6 +90,15 @@ class Evaluated:
             found[piece] = differences(one, [self.quantity], along, pushed, small)[
                 self.quantity].reshape(-1, self.size)
         return found
+
+
+def smoothly(run: Simulation, quantity: str, size: int, linear: Linear, history: History
+             ) -> Followed | Evaluated:
+    """What a smooth quantity is looked at by: its tape, or differences."""
+    try:
+        return Followed(run, quantity, linear, history)
+    except NoTape:
+        return Evaluated(run, quantity, size, linear, history)
 
 
 class RotationVector:

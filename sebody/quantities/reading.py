@@ -216,19 +216,25 @@ def _move(state, reading):
     """Evaluate motions of bodies; see `sebody.results.motion`."""
     status = OK
     for b in range(reading.bodies.shape[0]):
-        own = at(pointer_to(reading.bodies), BODY * b)
-        copy(state.frames, reading.frames)
-        work = reading.work
-        status = max(status, call_kernel(
-            own[0], RESIDUAL, 1, own[1], own[2],
-            Arguments(index=at(pointer_to(reading.index), own[3]),
-                      constants=at(pointer_to(reading.constants), own[4]),
-                      q=pointer_to(state.q), R=pointer_to(state.R), v=pointer_to(state.v),
-                      a=pointer_to(state.a), references=pointer_to(state.frames_old),
-                      frames=reading.frames, T=work, loads=work, coefficients=work,
-                      forces=at(pointer_to(reading.moved), own[5]), matrices=work, work=work,
-                      energies=work)))
+        status = max(status, move_body(b, state, reading))
     return status
+
+
+@compiled
+def move_body(b, state, reading):
+    """Evaluate the motion of one of the bodies."""
+    own = at(pointer_to(reading.bodies), BODY * b)
+    copy(state.frames, reading.frames)
+    work = reading.work
+    return call_kernel(
+        own[0], RESIDUAL, 1, own[1], own[2],
+        Arguments(index=at(pointer_to(reading.index), own[3]),
+                  constants=at(pointer_to(reading.constants), own[4]),
+                  q=pointer_to(state.q), R=pointer_to(state.R), v=pointer_to(state.v),
+                  a=pointer_to(state.a), references=pointer_to(state.frames_old),
+                  frames=reading.frames, T=work, loads=work, coefficients=work,
+                  forces=at(pointer_to(reading.moved), own[5]), matrices=work, work=work,
+                  energies=work))
 
 
 @compiled

@@ -80,6 +80,18 @@ class States(Symbols):
         """Kinds of the numbers that are read, as of `contract.read_numbers`."""
         return {kind for kind, _ in self.tape.inputs}
 
+    @property
+    def moving(self) -> list[int]:
+        """Numbers of motions of bodies that are read."""
+        return [place for kind, place in self.tape.inputs if kind == MOTION]
+
+    @property
+    def resting(self) -> list[slice]:
+        """Numbers of motions of bodies that do not depend on rates."""
+        return [slice(first + own.start, first + own.stop) for group, first in self.bodies.values()
+                for name, own in ROW.slices(group.counts).items()
+                if name in ("origin", "rotation", "y")]
+
     def places(self) -> NDArray | None:
         """Places of all outputs in the recorded row, where they are nothing but these."""
         kinds = {place: key for key, place in self.tape.inputs.items()}

@@ -20,7 +20,10 @@ from sebody.quantities.symbols import NoTape
 from sebody.reduction import craig_bampton
 from sebody.results.tapes import States
 
-ENERGIES = "energy.strain", "energy.potential", "energy.kinetic", "momentum", "momentum.norm"
+ENERGIES = ("energy.strain", "energy.potential", "energy.kinetic", "momentum", "momentum.norm",
+            "angular_momentum")
+INSIDE = [f"beam.node2.{name}" for name in ("position", "velocity", "acceleration",
+                                            "section_forces")]
 
 
 def linked() -> Model:
@@ -99,7 +102,7 @@ def test_derivatives_of_motions_and_forces(monkeypatch):
         "rod.force", "rod.local_force.x", "slide.local_moment", "hinge.angle",
         "slide.displacement", "slide.speed", "hinge.rate", "tip.acceleration", "beam.a.force",
         "b.rotation", "beam.forces", "hinge.moment", "spring.force.norm", "tip.velocity.norm",
-        *ENERGIES)) == {True, False}
+        *ENERGIES, *INSIDE)) == {True, False}
 
 
 @pytest.mark.parametrize("inertia", ["frame_axes", "material", "floating_field", "rigid_part"])
@@ -118,7 +121,7 @@ def test_derivatives_of_energies(monkeypatch, inertia, planar):
     model.superelement("beam", craig_bampton(fe, [(0, "full"), (4, "full")], 2), [base, tip],
                        inertia=inertia)
     model.move(base, np.eye(len(gravity))[0], rest_to_rest(0.3, 0.1))
-    compared(monkeypatch, model, ENERGIES)
+    compared(monkeypatch, model, [*ENERGIES, *INSIDE])
 
 
 def test_functions_forth_and_back():
