@@ -18,6 +18,7 @@ from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import (
     FAR,
+    NUDGE,
     Found,
     Work,
     balance,
@@ -31,6 +32,7 @@ from sebody.runs.settling import (
 )
 from sebody.runs.simulation import Simulation
 from sebody.runs.stability import Stiffness
+from sebody.runs.sticking import RUN, in_turns, remedy
 from sebody.runs.tensions import Tensions
 
 SMALLEST = 1.0 / 1024       # smallest load step, as a share of the load
@@ -215,8 +217,9 @@ class Loading:
 
     def _note_snap(self, target: float) -> None:
         distance = size(self.run, moved_by(self.run, self._start))
-        self.notes.append(f"moved far, by {distance:.3g} sizes of the model or radians, between "
-                          f"{self.share:.4g} and {target:.4g} of the load")
+        if distance > NUDGE:        # else the path goes on, where Newton's iteration fails
+            self.notes.append(f"moved far, by {distance:.3g} sizes of the model or radians, "
+                              f"between {self.share:.4g} and {target:.4g} of the load")
         self.step = 1.0 / self.steps
 
     def _reason(self, target: float) -> str:
@@ -224,6 +227,8 @@ class Loading:
         run, spin = self.run, self.steady.times(np.sqrt(target))
         said = user_faults.fault(run.model, -np.inf) or self.tensions.reason(run)
         if said:
+            return said
+        if said := in_turns(run, spin):
             return said
         try:
             tangent, residual = linear(run, spin, None)
@@ -234,16 +239,16 @@ class Loading:
         if not np.isfinite(correction).all():
             free = self._name(solver.least(residual)[1])
             return (f"a load moves {free}, which is free to move: hold it, or let something "
-                    "resist this load")
+                    f"resist this load{remedy(run)}")
         if lost := self._softest_now(tangent):
             return (f"the structure buckles or snaps, mostly at {lost}, and settles in no stable "
                     f"state nearby{self._searched()}"
-                    + ("; unstable='leave' lets it move on" if self.keep else ""))
+                    + ("; unstable='leave' lets it move on" if self.keep else "") + remedy(run))
         if size(run, correction) > FAR:
             return (f"a small part of the load moves {self._name(correction)} far: use more "
                     "steps, or supports for what is free to move")
-        return (f"forces on {self._name(solver.scale * residual)} do not come to balance: run "
-                "the model with damping until it rests")
+        return (f"forces on {self._name(solver.scale * residual)} do not come to balance"
+                + (remedy(run) or f": {RUN}"))
 
     def _searched(self) -> str:
         """Length of searches for stable states that were in vain."""

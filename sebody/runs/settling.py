@@ -41,6 +41,8 @@ SEARCH = 2500               # iterations of a motion to rest: falling arches of 
 SEARCHES = 4000             # of all motions of a structure that lead to no rest; then
 FEW = 200                   # of each further one: a smaller load step may rest soon
 FIRST, LAST = 10.0, 1e-4    # rate, by the square of that at which loads begin to move the structure
+STIFFEST = 1e-8     # the rate is at most the square of the pace over this: near an unstable state,
+                    # which is left, loads are almost in balance
 SLOW, SOFTEST = 0.1, 1e-9   # steps that shrink by less need softer springs, down to this rate
 SLOWEST, FASTEST = 1.5, 5.0  # factor by which the rate falls after a step that was found
 AGAIN = 4.0                 # factor by which it rises after one that was not
@@ -134,7 +136,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | N
         part = max(part / 2.0, least) if change > part * last else min(2.0 * part, 1.0)
         rounded = change < DRIFT * tolerance and change > last / 2.0    # gets no shorter
         first, last = change if last == np.inf else first, change
-        _move(run, -part * correction)
+        move(run, -part * correction)
         if change < tolerance or rounded or springs and change < ROUGH * size(run, _displacement(
                 run, springs.q, springs.R)):
             spin.move(run)
@@ -171,8 +173,8 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
                                           ending or moved < NUDGE)):
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
-            if rate > unit / LAST:
-                return False
+            if rate > unit / STIFFEST or found is not None and max(moved, last) < tolerance:
+                return False        # the latter on a saddle, which no spring moves it off
             continue
         if ending and (moved < tolerance or last / 2.0 < moved < DRIFT * tolerance
                        or _is_rounding(run, found.tangent, springs)):
@@ -207,10 +209,10 @@ def _is_least(run: Simulation, tangent: csc_matrix, unit: float, rests: bool) ->
 
 def nudge(run: Simulation, motion: NDArray, side: float) -> None:
     """Move a state a little along a motion, (unknowns,), to one of its sides."""
-    _move(run, side * NUDGE / max(size(run, motion), 1e-300) * motion)
+    move(run, side * NUDGE / max(size(run, motion), 1e-300) * motion)
 
 
-def _move(run: Simulation, change: NDArray) -> None:
+def move(run: Simulation, change: NDArray) -> None:
     """Add a change of the unknowns, in their axes."""
     state, full = run.state, np.zeros(run.numbering.total)
     full[:len(change)] = change
