@@ -93,6 +93,7 @@ class Followed:
         energies = [place for kind, place in states.tape.inputs if kind == ENERGY]
         self.energies = energy_rows(run, energies) if energies else None
         self.reading = states.reading()
+        self.bars = np.zeros((len(self.reading.outputs), self.reading.numbers.size))
         self.motions = motion_rows(run, self.reading, states.moving, states.resting) if (
             MOTION in kinds) else None
         self.places = states.depends()
@@ -110,15 +111,13 @@ class Followed:
         refuse_kept(self.run, self.quantity)
         rows = np.zeros((3, len(self.reading.outputs), linear.total))
         products = self.products
-        status = (_follow(linear.system, linear.state, self.reading, self.places, rows)
-                  if products is None else
-                  _follow_forces(linear.system, linear.state, self.reading, self.places, products,
-                                 rows))
+        parts, bars = (linear.system, linear.state, self.reading), self.bars
+        status = (_follow(*parts, self.places, bars, rows) if products is None else
+                  _follow_forces(*parts, self.places, bars, products, rows))
         if status == OK and products is not None and self.energies is not None:
-            status = _follow_energies(linear.system, linear.state, self.reading, products,
-                                      self.energies, rows)
+            status = _follow_energies(*parts, bars, products, self.energies, rows)
         if status == OK and self.motions is not None:
-            status = _follow_motions(linear.system, linear.state, self.reading, self.motions, rows)
+            status = _follow_motions(*parts, bars, self.motions, rows)
         if status != OK or not np.isfinite(rows).all():
             raise InputError(f"quantity {self.quantity!r} has no derivative at t = "
                              f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
@@ -153,9 +152,9 @@ def refuse_kept(run: Simulation, quantity: str) -> None:
 
 
 @compiled
-def _bars(system, state, reading, places, c, out):
-    """Bars of one output: those of motions are added to rows (3, total), all are in `numbers`."""
-    bars = np.zeros(reading.numbers.size)
+def _set_bars(state, reading, places, c, bars, out):
+    """Set the bars of one output; those of motions are added to rows (3, c, total)."""
+    bars[:] = 0.0
     bars[reading.outputs[c]] = 1.0
     play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
     for i in range(places.shape[0]):
@@ -168,23 +167,22 @@ def _bars(system, state, reading, places, c, out):
             one, other = (column + 1) % 3, (column + 2) % 3
             out[0, c, place + other] += bar * state.R[first + 3 * row + one]
             out[0, c, place + one] -= bar * state.R[first + 3 * row + other]
-    return bars
 
 
 @compiled
-def _follow(system, state, reading, places, out):
+def _follow(system, state, reading, places, bars, out):
     """Add the derivatives of all outputs, which depend on motions alone, to rows (3, c, total)."""
     status = evaluate_loaded(system, state, reading)
     w = np.zeros(out.shape[2])
     for c in range(out.shape[1]):
-        _bars(system, state, reading, places, c, out)
+        _set_bars(state, reading, places, c, bars[c], out)
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, out[:, c])
     return status
 
 
 @compiled
-def _follow_forces(system, state, reading, places, products, out):
+def _follow_forces(system, state, reading, places, bars, products, out):
     """The same of outputs that read forces of elements."""
     status = evaluate_loaded(system, state, reading)
     whole = reading.needs[TOTAL] == 1
@@ -198,15 +196,15 @@ def _follow_forces(system, state, reading, places, products, out):
         return status
     w = np.zeros(out.shape[2])
     for c in range(out.shape[1]):
-        bars = _bars(system, state, reading, places, c, out)
+        _set_bars(state, reading, places, c, bars[c], out)
         for i in range(w.size):
             w[i] = 0.0
         for i in range(places.shape[0]):
             if places[i, 0] == OF_TOTAL:
-                w[places[i, 1]] += bars[reading.inputs[i, 0]]
+                w[places[i, 1]] += bars[c, reading.inputs[i, 0]]
         if whole and system.links.dependent.shape[0] > 0:
             place_weights(system, state, w)
-        _weigh(system, state, reading, places, products, bars, w, whole)
+        _weigh(system, state, reading, places, products, bars[c], w, whole)
         if whole:
             for b in range(system.address.size):
                 for k in range(system.count[b]):
@@ -220,20 +218,18 @@ def _follow_forces(system, state, reading, places, products, out):
 
 
 @compiled
-def _follow_energies(system, state, reading, products, energies, out):
+def _follow_energies(system, state, reading, bars, products, energies, out):
     """Add what outputs depend on by energies, in the state in which they were followed."""
     status = set_energy_rows(system, state, products, energies)
     w = np.zeros(out.shape[2])
     found = np.zeros((3, out.shape[2]))
     for c in range(out.shape[1]):
-        bars = np.zeros(reading.numbers.size)
-        bars[reading.outputs[c]] = 1.0
-        play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
         found[:] = 0.0
         for i in range(reading.inputs.shape[0]):
             if reading.inputs[i, 1] == ENERGY:
                 for r in range(2):
-                    found[r] += bars[reading.inputs[i, 0]] * energies.rows[r, reading.inputs[i, 2]]
+                    found[r] += bars[c, reading.inputs[i, 0]] * energies.rows[
+                        r, reading.inputs[i, 2]]
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, found)
         out[:, c] += found
@@ -241,17 +237,14 @@ def _follow_energies(system, state, reading, products, energies, out):
 
 
 @compiled
-def _follow_motions(system, state, reading, motions, out):
+def _follow_motions(system, state, reading, bars, motions, out):
     """Add what outputs depend on by motions of bodies, as `_follow_energies`."""
     status = set_motion_rows(system, state, reading, motions)
     w = np.zeros(out.shape[2])
     found = np.zeros((3, 1, out.shape[2]))
     for c in range(out.shape[1]):
-        bars = np.zeros(reading.numbers.size)
-        bars[reading.outputs[c]] = 1.0
-        play_back(reading.steps, reading.factors, reading.weights, reading.numbers, bars)
         found[:] = 0.0
-        add_motion_rows(reading, motions, bars, found, 0)
+        add_motion_rows(reading, motions, bars[c], found, 0)
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, found[:, 0])
         out[:, c] += found[:, 0]

@@ -9,8 +9,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.basics import inputs
-from sebody.basics.errors import InputError
 from sebody.gradients.parameters import Column, Parameter, columns_of
 from sebody.model.model import Model
 from sebody.parameters.changes import Handle
@@ -62,13 +60,8 @@ class Point:
         for column, value in zip(self.columns, x, strict=True):
             found[column.name].reshape(-1)[column.component] = value
         for name, value in found.items():
-            handle = self._handles[name]
-            for bound, wrong, wanted in ((handle.least, np.less, "at least"),
-                                         (handle.above, np.less_equal, "above"),
-                                         (handle.most, np.greater, "at most")):
-                if bound is not None and wrong(value, bound).any():
-                    raise InputError(f"{name} is {inputs.shown(value)}: it must be {wanted} "
-                                     f"{bound:g}; give the optimizer bounds")
+            self._handles[name].refuse(value[None], lambda _, name=name: name,
+                                       "; give the optimizer bounds")
         return found
 
     def _about(self, column: Column, values: dict[str, NDArray]) -> Handle:

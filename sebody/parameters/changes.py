@@ -83,17 +83,24 @@ class Handle:
         remedy = "give " + (f"an array (runs, {', '.join(map(str, self.base.shape))})"
                             if self.base.shape else "one number for each run")
         found = inputs.array(values, name, (None, *self.base.shape), remedy=remedy)
-        rows = found.reshape(len(found), self.base.size)
-        lowest, highest = rows.min(axis=1, initial=np.inf), rows.max(axis=1, initial=-np.inf)
-        for values_of, bound, wrong, wanted in (
-                (lowest, self.least, np.less, "at least"),
-                (lowest, self.above, np.less_equal, "above"),
-                (highest, self.most, np.greater, "at most")):
-            if bound is not None and wrong(values_of, bound).any():
-                run = int(np.argmax(wrong(values_of, bound)))
-                raise InputError(f"{name} of run {run} is {inputs.shown(found[run])}: it must be "
-                                 f"{wanted} {bound:g}")
+        self.refuse(found, lambda run: f"{name} of run {run}")
         return found
+
+    def refuse(self, values: NDArray, what: Callable[[int], str], remedy: str = "") -> None:
+        """Refuse values outside the bounds, (runs, *shape); `what` names those of a run.
+
+        Raises
+        ------
+        InputError
+        """
+        for bound, wrong, wanted in ((self.least, np.less, "at least"),
+                                     (self.above, np.less_equal, "above"),
+                                     (self.most, np.greater, "at most")):
+            if bound is None or not (runs := np.argwhere(wrong(values, bound))).size:
+                continue
+            run = int(runs[0][0])
+            raise InputError(f"{what(run)} is {inputs.shown(values[run])}: it must be {wanted} "
+                             f"{bound:g}{remedy}")
 
 
 def attribute_of(owner: object, attribute: str, touches: str, base: NDArray | None = None,

@@ -1,7 +1,15 @@
-"""What the bodies of a model lack, and why."""
+"""What summaries say of the bodies of a model: what they lack and why, kernels that would pay."""
 
+from sebody.contract.names import layout_variant
 from sebody.fem.materials import doubts
+from sebody.kernels.loader import derive_command, load
+from sebody.model.inertias import second_order
 from sebody.model.mechanism import Mechanism
+
+_SHOWN = 6          # names of bodies
+# unknowns of a body up to which a kernel with its counts as constants takes a fifth to a half less
+# time than a general one; with 34 there is no difference, see tests/benchmarks/README.md
+PAYS = 24
 
 
 def cautions(model: Mechanism) -> list[str]:
@@ -36,4 +44,15 @@ def _listed(names: list[str]) -> str:
     return " and ".join(filter(None, [", ".join(shown[:-1]), shown[-1]]))
 
 
-_SHOWN = 6
+def kernels_that_pay(model: Mechanism) -> dict[str, list[str]]:
+    """Commands that make kernels, and the bodies on general kernels that gain by each."""
+    commands: dict[str, list[str]] = {}
+    for body in model.bodies.values():
+        kernel = load(body.kernel)
+        assert kernel is not None       # the model was built with it
+        if kernel.N_POSITIONS is None and len(body.reduced.stiffness) <= PAYS:
+            variant = layout_variant(body.layout, body.reduced.modes, bool(kernel.DAMPED),
+                                     second_order(body.reduced, body.inertia, body.stiffening))
+            command = derive_command(variant, kernel.FRAME, kernel.INERTIA)
+            commands.setdefault(command, []).append(body.name)
+    return commands

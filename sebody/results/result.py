@@ -16,8 +16,7 @@ from sebody.engine.scalars import record
 from sebody.model.summary import table
 from sebody.quantities import names
 from sebody.results import dataframes, naming
-from sebody.results.advice import kernels_that_pay
-from sebody.results.cautions import cautions
+from sebody.results.cautions import cautions, kernels_that_pay
 from sebody.results.contact_states import normal_forces
 from sebody.results.field import Field
 from sebody.results.field_quantities import field_of

@@ -1,14 +1,14 @@
 """The search: one axis at a time, then all together, cheapest first."""
 
+from collections.abc import Sequence
 from functools import partial
 from math import inf
 
 from sebody.basics.errors import InputError
 from sebody.contract.names import ANY
 from sebody.explore.advice.changes import Choice, Step
-from sebody.explore.advice.combinations import combinations
 from sebody.explore.advice.cost import of_form
-from sebody.explore.advice.estimates import expected, least
+from sebody.explore.advice.estimates import Estimates, expected, least
 from sebody.explore.advice.first_runs import LONGER, MISSED
 from sebody.explore.advice.forms import Form, Part, alike
 from sebody.explore.advice.indicators.activity import activity
@@ -23,6 +23,7 @@ SHARE = 0.5                 # of the tolerance, that one part may use
 EXACT = 0.05                # of the tolerance, that a change may make that should make none
 RARE = 0.5                  # steps of variable length relative to fixed ones, that pay
 LOCAL = 8.0                 # factor of local tolerances: half as many steps
+MOST = 200                  # combinations that are carried from part to part
 REPEATS = 2                 # further runs of what is compared in time
 QUICK = 0.2                 # seconds of runs that are repeated: longer ones vary less
 # share of a run's time by which another one is clearly quicker, or quicker and more exact
@@ -310,3 +311,40 @@ class Search:
             return True
         again = self._tried(half) or self.lab.attempt(half, "confirmation")[0]
         return again.error <= self.tolerance
+
+
+def combinations(parts: Sequence[Part], forms: Sequence[Sequence[Form]], estimates: Estimates,
+                 flat: bool, groups: Sequence[Sequence[int]]) -> list[tuple[Form, ...]]:
+    """Forms of all parts, cheapest first; parts of a group have the same form."""
+    combined: list[tuple[float, float, tuple[Form, ...]]] = [(0.0, 0.0, ())]
+    for group in groups:
+        own = forms[group[0]]
+        squares = [sum(expected(estimates.of_form(k, form))**2 for k in group) for form in own]
+        front = _front([(sum(of_form(parts[k], form, flat) for k in group), square, (form,))
+                        for form, square in zip(own, squares, strict=True)])
+        combined = _thinned(_front([(a + b, e + f, (*one, *other)) for a, e, one in combined
+                                    for b, f, other in front]))
+    return [_spread(one, groups, len(parts)) for _, _, one in combined]
+
+
+def _spread(forms: Sequence[Form], groups: Sequence[Sequence[int]], count: int) -> tuple:
+    """The form of each part, from that of its group."""
+    of_part = {k: form for form, group in zip(forms, groups, strict=True) for k in group}
+    return tuple(of_part[k] for k in range(count))
+
+
+def _front(points: list[tuple[float, float, tuple[Form, ...]]]) -> list:
+    """Those that no cheaper one equals or beats in error."""
+    kept, best = [], float("inf")
+    for point in sorted(points):
+        if point[1] < best:
+            kept.append(point)
+            best = point[1]
+    return kept
+
+
+def _thinned(points: list) -> list:
+    """At most so many of a front, evenly, with both its ends."""
+    if len(points) <= MOST:
+        return points
+    return [points[round(k * (len(points) - 1) / (MOST - 1))] for k in range(MOST)]
