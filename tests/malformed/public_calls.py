@@ -205,6 +205,8 @@ RESULTS = {
         "node": 1, "axes": "global", "static": True}),
     "field.section_forces": Call(lambda **a: result().field("rod").section_forces(**a), lambda: {
         "step": 1, "t": None, "static": True}),
+    "field.section_strains": Call(lambda **a: result().field("rod").section_strains(**a), lambda: {
+        "step": 1, "t": None, "static": True}),
     "field.envelope": Call(lambda **a: result().field("rod").envelope(**a), lambda: {
         "quantity": "displacement", "static": True}),
     "field.label": Call(lambda **a: result().field("rod").label(**a), lambda: {"label": 1}),
@@ -212,6 +214,16 @@ RESULTS = {
 FEM = {
     "straight_beam": Call(fem.straight_beam, lambda: {
         "start": X, "end": Y, "section": SECTION, "elements": 2, "up": (0.0, 1.0, 0.0)}),
+    "beam_along": Call(fem.beam_along, lambda: {
+        "axis": fem.Axis([X, Y]), "section": SECTION, "elements": 2}),
+    "Axis": Call(fem.Axis, lambda: {
+        "curve": [X, (2.0, 1.0, 0.0), Y], "twist": [[0, 0], [1, 0.5]], "up": (0.0, 1.0, 0.0),
+        "kinks": [1]}),
+    "GeneralSection": Call(fem.GeneralSection, lambda: {
+        "stiffness": np.eye(6), "mass": np.eye(6), "outline": None, "fibres": (),
+        "retardation": 0.1, "name": "station 1"}),
+    "Stations": Call(fem.Stations, lambda: {
+        "places": [0.0, 1.0], "sections": [fem.GeneralSection(np.eye(6), np.eye(6))] * 2}),
     "planar_beam": Call(fem.planar_beam, lambda: {
         "start": X[:2], "end": Y[:2], "section": SECTION, "elements": 2}),
     "frame": Call(fem.frame, lambda: {
@@ -287,6 +299,7 @@ IO = {
         "others": {"c": [0.0, 1.0]}}),
     "LoadSeries.from_csv": Call(io.LoadSeries.from_csv, lambda: {
         "path": "none.csv", "interpolation": "linear", "columns": ["a"]}),
+    "read_beamdyn": Call(io.read_beamdyn, lambda: {"path": "none.dat", "blade": None}),
     "read_extptfm": Call(io.read_extptfm, lambda: {"path": "none.dat", "interface": X, "base": Y}),
     "write_extptfm": Call(io.write_extptfm, lambda: {
         "body": reduction.grounded_body(np.eye(7), np.eye(7), [X], modes=1), "path": "a.dat",

@@ -2,66 +2,24 @@
 
 import numpy as np
 import pytest
+from general_beam_cases import (
+    LINE,
+    cantilever,
+    composite,
+    curved,
+    curved_of_chrono,
+    error,
+    moved,
+    twisted,
+)
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model
 from sebody.analysis import equilibrium, modes
 from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, circle
-from sebody.model.variants import divide
-
-LINE = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]]
-
-
-def composite():
-    """Straight, bending and torsion coupled: kynema's static_composite_beam_bending."""
-    K = np.diag([1368.17, 88.56, 38.78, 16.96, 59.12, 141.47]) * 1e3
-    for i, j, value in ((3, 4, 17.61e3), (3, 5, -0.351e3), (4, 5, -0.37e3)):
-        K[i, j] = K[j, i] = value
-    M = np.diag([8.538e-2] * 3 + [1.4433e-2, 0.4097e-2, 1.0336e-2])
-    return (Axis(LINE), GeneralSection(K, M), (0, 0, 150.0),
-            (-0.0902726627566299, -0.0647488486259036, 1.22973648292371))
-
-
-def twisted():
-    """A quarter of a turn of a flat section: kynema's static_twisted_composite_beam_bending."""
-    K = np.diag([2.5e10, 8.2604167e9, 8.2604167e9, 1.41872656e8, 5.20833e8, 1.30208333e8])
-    return (Axis(LINE, twist=[[0, 0], [1, np.pi / 2]]), GeneralSection(K, np.eye(6)),
-            (0, 0, -4e6), (-1.14152599953942, -1.71805334646388, -3.59321324026952))
-
-
-def curved():
-    """A parabola through three points: kynema's static_curved_composite_beam_bending."""
-    x, y = np.array([38.2683, 70.7107]), np.array([-7.61205, -29.2893])
-    slope, bend = np.linalg.solve(np.column_stack([x, x**2]), y)
-    K = np.diag([1e7, 41.6667e5, 41.6667e5, 8.333e5, 8.333e5, 8.333e5])
-    return (Axis(lambda s: [x[1] * s, (slope + bend * x[1] * s) * x[1] * s, 0.0]),
-            GeneralSection(K, np.eye(6)), (0, 0, 600.0),
-            (-23.6459716009047, 13.7208006040058, 53.5776450626987))
-
-
-def cantilever(case, elements, bodies=None, modes=0, turn=None, **options):
-    """Model, and its last node."""
-    axis, section, force = case[:3]
-    R = np.eye(3) if turn is None else turn
-    model = Model()
-    root = model.node("root", R @ axis.position(0.0) + (0.0 if turn is None else [1.0, 2.0, 3.0]))
-    tip = model.node("tip", root.point + R @ (axis.position(1.0) - axis.position(0.0)))
-    if turn is not None:
-        options["rotation"] = R
-    model.beam("beam", (root, tip), section, elements, bodies, modes, axis=axis, **options)
-    model.fix(root)
-    model.force(tip, R @ force)
-    return model, tip
-
-
-def moved(case, *arguments, **options):
-    model, tip = cantilever(case, *arguments, **options)
-    return equilibrium(model, steps=5)["tip.position"][-1] - tip.point
-
-
-def error(u, case):
-    return np.linalg.norm(u - np.array(case[3])) / np.linalg.norm(case[3])
+from sebody.model.beams import part_bodies
+from sebody.model.variants import copied, divide, planar
 
 
 @pytest.mark.parametrize(("case", "wanted"), [
@@ -76,10 +34,11 @@ def test_published_digits(case, wanted):
     assert error(twice, case) < wanted
 
 
-@pytest.mark.parametrize(("case", "bodies", "wanted"), [
-    (composite, 4, 4e-5), (twisted, 4, 4e-4), (curved, 5, 2e-3)])
-def test_superelements(case, bodies, wanted):
-    assert error(moved(case(), 8 * bodies, bodies, 4), case()) < wanted
+@pytest.mark.parametrize(("case", "bodies", "divide_by", "wanted"), [
+    (composite, 4, "length", 4e-5), (twisted, 4, "length", 4e-4), (curved, 4, "rotation", 4e-4),
+    (curved_of_chrono, 5, "rotation", 3e-4)])
+def test_superelements(case, bodies, divide_by, wanted):
+    assert error(moved(case(), 8 * bodies, bodies, 4, divide=divide_by), case()) < wanted
 
 
 def test_a_beam_turned_by_rotation_moves_as_before():
@@ -184,3 +143,36 @@ def test_stubby_elements_are_nonlinear_beams():
     model.beam("beam", (model.node("a", (0, 0, 0)), model.node("b", (1.0, 0, 0))), thick, 4)
     assert {part.frame for part in model.beams[0].parts} == {"converged_mean"}
     assert not any(part.stiffening for part in model.beams[0].parts)
+
+
+def test_variants_know_beams_along_an_axis():
+    """Bodies made anew are those that were built; a plane has no such beams, but their bodies."""
+    model, _ = cantilever(softening(), 12, 3, 2, divide="rotation",
+                          turn=Rotation.from_rotvec([0.2, 0.1, 0.7]).as_matrix())
+    beam = model.beams[0]
+    for part, body in zip(beam.parts, part_bodies(model, beam, beam.section), strict=True):
+        assert_allclose(body.stiffness, part.reduced.stiffness, rtol=1e-12)
+    assert copied(model).beams[0].options["axis"] is beam.options["axis"]
+    flat = Axis(lambda s: [10 * s, s * s, 0.0])
+    spatial, _ = cantilever((flat, circle(0.1, 2e11, 0.3, 7800.0), (0, 1.0, 0)), 8, 1, 2)
+    made = planar(spatial).model
+    assert list(made.bodies) == ["beam"] and not made.beams
+    with pytest.raises(InputError, match="has built 0 beams 'beam'"):
+        divide(made, "beam", 2)
+
+
+def test_quantities_inside_a_blade_are_read_by_name():
+    """Forces and strains of sections at a node, of a recorded run and of a saved file."""
+    axis, stations, force = softening()
+    model, _ = cantilever((axis, stations, force), 12, 2, 2, divide="rotation")
+    result = equilibrium(model, 2)
+    forces, strains = (result[f"beam 2.node0.section_{name}"][-1, 0] for name in (
+        "forces", "strains"))
+    place = model.beams[0].places[1]
+    assert_allclose(stations(place).stiffness @ strains, forces, rtol=1e-6, atol=1e-6 * 1e4)
+    field = result.field("beam 2").section_strains()
+    assert_allclose(field[0, 0], strains, rtol=1e-12)
+    lever = axis.position(1.0) - axis.position(place)
+    assert_allclose(np.linalg.norm(forces[3:]), np.linalg.norm(np.cross(lever, force)), rtol=0.02)
+    with pytest.raises(InputError, match="of beams there are section_strains, section_forces"):
+        result.field("beam 2").strain()

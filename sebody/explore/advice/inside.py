@@ -29,7 +29,8 @@ class Places:
     def __init__(self, model: Mechanism, names: list[str]):
         self._found: dict[str, tuple[str, int, int, str]] = {}
         parts = {part.name: (beam, k) for beam in model.beams
-                 for k, part in enumerate(beam.parts) if model.bodies.get(part.name) is part}
+                 for k, part in enumerate(beam.parts) if model.bodies.get(part.name) is part
+                 and beam.options["divide"] == "length"}      # else places move with the bodies
         for name in names:
             inside = INSIDE.fullmatch(name)
             if inside and inside["body"] in parts:

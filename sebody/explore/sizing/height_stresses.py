@@ -178,6 +178,9 @@ def _beam(model: Model, name: str) -> Beam:
     if len(one.parts) > 1 or one.options["damping"]:
         raise InputError(f"sizing: beam {name!r} has {len(one.parts)} superelements and damping "
                          f"{one.options['damping']!r}: build it with bodies=1 and without damping")
+    if one.options["axis"] is not None:
+        raise InputError(f"sizing: beam {name!r} has an axis of its own, whose elements have no "
+                         "heights: sizing is of straight beams")
     if one.parts[0].inertia not in LINEAR:
         raise InputError(f"sizing: beam {name!r} has inertia {one.parts[0].inertia!r}: build it "
                          "with inertia='material', whose forces are linear in the reduced matrices")

@@ -7,6 +7,7 @@ import numpy as np
 from sebody.fem.beam import section_axes
 from sebody.fem.section import StiffnessSection
 from sebody.fem.section_along import AnySection, section_at
+from sebody.model.beams import course_of
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam
 from sebody.model.variants.flattening import Flattening
@@ -17,6 +18,8 @@ _SAME = 1e-9            # relative: stiffnesses that are the same but for roundi
 def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam]:
     """The beams of a planar model, without those that changed since they were built.
 
+    Nor those along an axis or of coupled sections, which cannot be built in a plane.
+
     Parameters
     ----------
     model, made : Mechanism
@@ -24,6 +27,8 @@ def flat_beams(model: Mechanism, made: Mechanism, flat: Flattening) -> list[Beam
     """
     beams = []
     for beam in model.beams:
+        if course_of(model, beam, beam.section).coupled:
+            continue
         if all(model.bodies.get(part.name) is part and part.reduced is body
                for part, body in zip(beam.parts, beam.bodies, strict=True)):
             parts = tuple(made.bodies[part.name] for part in beam.parts)
