@@ -291,6 +291,7 @@ def _twist(twist: Any, given: NDArray | None) -> tuple[Callable[[NDArray], NDArr
             angles = [inputs.number(_called(twist, place), f"Axis: twist({place:.6g})")
                       for place in places.ravel().tolist()]
             return np.array(angles, dtype=float).reshape(places.shape)
+        of_function(np.array([0.0, 1.0]))       # refuses what is no angle
         return of_function, np.zeros(0)
     if np.ndim(twist) == 0:
         angle = inputs.number(twist, "Axis: twist", remedy=_TWIST)

@@ -217,7 +217,7 @@ FEM = {
     "beam_along": Call(fem.beam_along, lambda: {
         "axis": fem.Axis([X, Y]), "section": SECTION, "elements": 2}),
     "Axis": Call(fem.Axis, lambda: {
-        "curve": [X, (2.0, 1.0, 0.0), Y], "twist": [[0, 0], [1, 0.5]], "up": (0.0, 1.0, 0.0),
+        "curve": [X, (2.0, 1.0, 0.0), Y], "twist": lambda place: place, "up": (0.0, 1.0, 0.0),
         "kinks": [1]}),
     "GeneralSection": Call(fem.GeneralSection, lambda: {
         "stiffness": np.eye(6), "mass": np.eye(6), "outline": None, "fibres": (),
