@@ -65,8 +65,8 @@ PACKAGES = {"basics": {"numpy"}, "contract": {"numpy"}, "compiler": RUNTIME | {"
             "generated": {"numba", "math"}, "derive": {"sympy", "mpmath"}}
 # modules that may import matplotlib
 PICTURES = {"plots", "control_figures", "frequency_pictures", "orbit_pictures", "drawing",
-            "film", "film_marks", "rendering", "draw", "picture", "paper_figures", "vibration_figures",
-            "notebook"}
+            "film", "film_marks", "rendering", "draw", "picture", "paper_figures",
+            "vibration_figures", "notebook"}
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by folder, and what they may import
