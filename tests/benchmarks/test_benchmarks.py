@@ -106,6 +106,13 @@ def test_planned_steps_are_compared_with_fixed_ones():
     assert row["over fixed"] < 1.1 and row["energy over fixed"] < 1.1
 
 
+@pytest.mark.parametrize("name", ["four-bar", "slider-crank"])
+def test_plans_of_mechanisms_are_compared_with_fixed_steps(name):
+    rows = list(imported("bench_planned").beside_fixed(name, (1e-3, 1e-4), 1.0))
+    assert all(max(row["over fixed"], row["energy over fixed"]) < 1.1 for row in rows)
+    assert rows[1]["error"] < 0.5 * rows[0]["error"]
+
+
 def test_orders_of_creation_are_compared(monkeypatch, capsys):
     bench = imported("bench_order")
     monkeypatch.setattr(bench, "GRAPHS", {"tree": (bench.tree, 30)})
