@@ -122,6 +122,19 @@ def test_gradients_are_measured_in_runs(capsys, monkeypatch):
     assert text.count("runs\n") == 6
 
 
+def test_steps_that_follow_the_phase_are_measured_beside_equal_ones(monkeypatch):
+    from sebody.verify.bench import following
+
+    monkeypatch.setitem(bench.ALONE, "following-steps",
+                        lambda: following.measure(1e-5, t_end=15.0, runs=1))
+    planned, equal, chosen = found = bench.measure(["following-steps"])
+    assert planned.tip_error < 1.1 * equal.tip_error
+    assert planned.energy_drift < 1.1 * equal.energy_drift
+    assert chosen.tip_error > 5 * equal.tip_error       # near the top one change is enough
+    assert planned.h == pytest.approx(equal.h)
+    assert bench.report(found, 1e10).count("following-steps, ") == 3
+
+
 def test_many_short_runs_are_measured_by_all_threads_and_alone(monkeypatch):
     from sebody.verify.bench import ensemble, peer
 

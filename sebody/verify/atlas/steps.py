@@ -62,11 +62,12 @@ def _half_period() -> float:
     return float(2.0 * ellipk(np.sin(ANGLE / 2.0)**2) / np.sqrt(WEIGHT / INERTIA))
 
 
-def _pendulum() -> Model:
+def pendulum(angle: float = ANGLE) -> Model:
+    """A uniform rod that is let go from an angle."""
     model = Model(planar=True)
     model.gravity((0.0, -9.81))
     model.rigid_body("rod", model.node("pin", (0.0, 0.0)), 1.0, 1.0 / 3.0,
-                     centre=(np.sin(ANGLE), -np.cos(ANGLE)))
+                     centre=(np.sin(angle), -np.cos(angle)))
     model.fix("pin", "position")
     return model
 
@@ -76,7 +77,7 @@ def _energies(lengths: tuple[float, ...]) -> NDArray:
     half = _half_period()
     ends = half / len(lengths) * np.arange(1, SWINGS * len(lengths) + 1)
     plan = Plan(np.stack([ends, np.tile(lengths, SWINGS)], axis=1), allowed=np.inf)
-    run = Simulation(_pendulum(), half / 64, generalized_alpha(1.0, tolerance=1e-12),
+    run = Simulation(pendulum(), half / 64, generalized_alpha(1.0, tolerance=1e-12),
                      tolerance=Tolerance(1.0), plan=plan).run_to(SWINGS * half).result()
     energy = (INERTIA * run["pin.angular_velocity"]**2 / 2.0
               - WEIGHT * np.cos(run["pin.rotation"] + ANGLE))
@@ -87,8 +88,8 @@ def _planned() -> tuple[float, float]:
     """Largest errors of planned steps and of as many fixed ones, by far shorter ones."""
     t_end = 6.0
     scheme = generalized_alpha(index=2)
-    planned = simulate(_pendulum(), 0.01, t_end, scheme, tolerance=Tolerance(1e-5))
-    fixed = simulate(_pendulum(), t_end / planned.steps, t_end, scheme)
-    exact = simulate(_pendulum(), 1e-4, t_end, scheme, output_every=100)
+    planned = simulate(pendulum(), 0.01, t_end, scheme, tolerance=Tolerance(1e-5))
+    fixed = simulate(pendulum(), t_end / planned.steps, t_end, scheme)
+    exact = simulate(pendulum(), 1e-4, t_end, scheme, output_every=100)
     return tuple(float(np.abs(np.interp(exact.t, one.t, np.unwrap(one["pin.rotation"]))
                               - np.unwrap(exact["pin.rotation"]))[-1]) for one in (planned, fixed))

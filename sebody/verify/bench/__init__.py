@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from sebody.basics.errors import InputError
 from sebody.runs.first_run import prepare
-from sebody.verify.bench import ensemble, gradient, machine, own, peer
+from sebody.verify.bench import ensemble, following, gradient, machine, own, peer
 from sebody.verify.bench.measurement import Measurement
 from sebody.verify.bench.parts import Cost, cost
 
@@ -13,7 +13,8 @@ __all__ = ["NAMES", "Cost", "cost", "machine_rate", "measure", "report", "to_jso
 
 SCENES = ("hinged-beam", "planar-hinged-beam", "spherical-beam", "chain", "slider-crank",
           "four-bar", "heavy-top")
-EXTRA = ("modes", ensemble.SCENE, gradient.SCENE)       # only by name
+ALONE = {one.SCENE: one.measure for one in (ensemble, gradient, following)}
+EXTRA = "modes", *ALONE         # only by name
 NAMES = SCENES + EXTRA
 
 
@@ -21,7 +22,8 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
     """Measure scenes, all by default, each beside the peer's models in the same run.
 
     "modes" is the hinged beam by the number of its internal modes, "ensemble" ten thousand short
-    runs of it, "gradient" exact gradients of it beside its run.
+    runs of it, "gradient" exact gradients of it beside its run, "following-steps" a pendulum by
+    planned steps, by as many equal ones, and by steps that are chosen one by one.
 
     Raises
     ------
@@ -33,10 +35,9 @@ def measure(scenes: Iterable[str] = ()) -> list[Measurement]:
         if name not in NAMES:
             raise InputError(f"there is no benchmark of scene {name!r}: use {', '.join(NAMES)}, or "
                              "`cost` for the parts of its steps")
-    others = [name for name in chosen if name not in (ensemble.SCENE, gradient.SCENE)]
+    others = [name for name in chosen if name not in ALONE]
     prepare(case.build().model for name in others for case in own.cases(name)[:4])
-    rows = ensemble.measure() if ensemble.SCENE in chosen else []
-    rows += gradient.measure() if gradient.SCENE in chosen else []
+    rows = [row for name, own in ALONE.items() if name in chosen for row in own()]
     for name in others:
         rows += [own.measure(case) for case in own.cases(name)]
         if peer.available():
@@ -58,6 +59,7 @@ def report(measurements: list[Measurement], rate: float) -> str:
         "" if m.thread_efficiency is None else f", thread efficiency {m.thread_efficiency:.2f}")
         for m in measurements if m.scene == ensemble.SCENE]
     lines += gradient.in_runs([m for m in measurements if m.scene == gradient.SCENE])
+    lines += following.drifts(measurements)
     lines += ["", f"this machine: {rate / 1e9:.2f} Gflop/s on 16 x 16 products, one core"]
     return "\n".join([*lines, *ratios(measurements)])
 

@@ -27,6 +27,8 @@ class Measurement:
         Of an ensemble, see `sebody.verify.bench.ensemble`.
     processor_seconds : float or None
         Of the peer's beams: what the processor worked, in the run with the least.
+    energy_drift : float or None
+        Of a conservative motion, see `sebody.verify.bench.following`.
     """
 
     scene: str
@@ -40,6 +42,7 @@ class Measurement:
     flops_per_step: float | None = None
     thread_efficiency: float | None = None
     processor_seconds: float | None = None
+    energy_drift: float | None = None
 
     def as_dict(self) -> dict:
         """For JSON."""
