@@ -71,3 +71,24 @@ def turbine(blades=3, heavier=0.0, nacelle=(4e5, 9e5), damping=200.0, order=1):
                   turning_stiffness=(0.0, 6e6, 9e6), turning_damping=(0.0, 500.0, 500.0),
                   name="nacelle")
     return model
+
+
+def turbine_on_a_tower(heavier=0.0):
+    """A hub with three flexible blades on a nacelle, on a beam that bends more one way."""
+    model = Model()
+    foot, top, hub = (model.node(name, place) for name, place in (
+        ("foot", -8.0 * TURNED[:, 2]), ("top", (0, 0, 0)), ("hub", (0, 0, 0))))
+    model.fix(foot)
+    steel = Section(8e-3, 1.6e-5, 4e-5, 3e-5, 2.1e11, 0.3, 7850.0)
+    model.beam("tower", (foot, top), steel, 4, 1, 2, up=AXIS, damping=0.02)
+    model.rigid_body("nacelle", top, 150.0, TURNED @ np.diag([30.0, 40.0, 35.0]) @ TURNED.T)
+    model.revolute(hub, AXIS, to=top, name="shaft")
+    model.rigid_body("hub mass", hub, 60.0, about_shaft(8.0, 5.0))
+    for k in range(3):
+        psi = 2.0 * np.pi * k / 3
+        tip = model.node(f"tip {k}", 5.0 * (np.cos(psi) * TURNED[:, 1]
+                                            + np.sin(psi) * TURNED[:, 2]))
+        section = Section(4e-3, 2e-6, 8e-6, 4e-6, 7e10, 0.3, 2700.0)
+        model.beam(f"blade {k}", (hub, tip), section, 4, 1, 1, up=AXIS, damping=0.004)
+        model.rigid_body(f"mass {k}", tip, 2.0 + heavier * (k == 0), 0.02 * np.eye(3))
+    return model

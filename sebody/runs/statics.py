@@ -10,7 +10,9 @@ from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError, SimulationError
 from sebody.contract.layout import FIELD, RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads
+from sebody.model.arguments import known
 from sebody.model.model import Model
+from sebody.model.parts import Node
 from sebody.results.postprocessing import Forces
 from sebody.results.result import Result
 from sebody.results.static_summary import static_residuals
@@ -27,7 +29,8 @@ STICKING = 1e-7             # of extents: by which the loads move what sticks, n
 
 
 def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float = TOLERANCE,
-                spin: ArrayLike | None = None, unstable: str = "leave") -> Result:
+                spin: ArrayLike | None = None, unstable: str = "leave",
+                hub: Node | str | None = None) -> Result:
     """Equilibrium under gravity and the loads of a time, applied in equal steps.
 
     Parameters
@@ -48,6 +51,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
         left for a stable one, which the structure moves to, or kept, with a warning. Nothing is
         said of stability where loads or friction leave no potential (the tangent is not symmetric),
         or in a rotating frame.
+    hub : Node or str, optional
+        With a spin: a node on the axis of what turns, which need not go through the origin.
 
     Returns
     -------
@@ -59,7 +64,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     Raises
     ------
     InputError
-        Not a positive number of steps, a spin of the wrong shape, or one outside a bearing's table.
+        Not a positive number of steps, a spin of the wrong shape, or one outside a bearing's table,
+        a hub that does not turn.
     SimulationError
         No equilibrium is found, or one that only the model has, in which bodies without geometric
         stiffening fold up under tension; what was found before is in its `result`.
@@ -71,8 +77,9 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     model = inputs.instance(model, "model", Model, "give a sebody.Model")
     _refuse_states(model)
     given = Spin.of(model, spin)
+    own = None if hub is None else known(model, hub).name
     model = copied_for_reading(model)
-    whole = parts_of(model, given) if given.rotates else given
+    whole = parts_of(model, given, model.nodes.get(own)) if given.rotates else given
     read_tables(model, whole)
     return _equilibrium(_at_rest(model, t), whole, steps, tolerance, unstable)
 

@@ -363,3 +363,10 @@ def test_columns_and_chains_are_found():
     rows = bench.chains(("arc", "straight"), (4,), (2e11,), (1,))
     assert len(rows) == 2 and all(row["error"] < 1e-4 for row in rows)
     assert "1 of 1" in bench.table(rows)
+
+
+def test_blades_on_a_tower_by_two_methods():
+    """Floquet's multipliers and averages of multi-blade coordinates, of every mode."""
+    rows = imported("bench_rotors").blades(4.0)
+    assert len(rows) == 7 and max(row["floquet"] for row in rows) < 1e-6
+    assert all(row["damping"] > 1e-4 for row in rows)

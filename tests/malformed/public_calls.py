@@ -156,7 +156,7 @@ ANALYSIS = {
         "steps": 1, "frame": "auto", "hub": None}),
     "equilibrium": Call(an.equilibrium, lambda: {
         "model": pendulum(), "steps": 2, "t": 0.0, "tolerance": 1e-9, "spin": None,
-        "unstable": "leave"}),
+        "unstable": "leave", "hub": None}),
     "linearize": Call(an.linearize, lambda: {
         "run": hanging(), "spin": None, "frame": "auto", "hub": None}),
     "modes": Call(an.modes, lambda: {

@@ -378,3 +378,23 @@ def test_a_heavier_blade_against_a_run():
         near &= np.abs(omega - speed) > 4 * width   # of unbalance
         peak = omega[near][np.argmax(spectrum[near])]
         assert abs(peak - expected) < width
+
+
+def test_an_axis_away_from_the_origin_goes_through_its_hub():
+    """Equilibrium and modes of a rotor that stands elsewhere are those at the origin."""
+    shift, speed, found = TURNED @ (0.3, 2.0, -1.0), 170.0, []
+    for place in (np.zeros(3), shift):
+        model = Model()
+        for name in "od":
+            model.node(name, place)
+        model.fix("o")
+        model.rigid_body("disc", "d", 1.0, about_shaft(2e-3, 1e-3))
+        model.bushing("o", to="d", stiffness=(1e5, 1e4, 1.44e4), damping=4.0, rotation=TURNED,
+                      turning_stiffness=(0.0, 1e3, 1e3))
+        state = equilibrium(model, 1, spin=speed * AXIS, hub="d")
+        assert_allclose(state["d.position"][-1], place, atol=1e-9)
+        assert_allclose(state["d.velocity"][-1], 0.0, atol=1e-6)
+        found.append(modes(state, speed * AXIS, hub="d").values)
+    assert_allclose(found[0], found[1], rtol=1e-7, atol=1e-4)
+    with pytest.raises(InputError, match="hub 'o' does not turn freely"):
+        equilibrium(model, 1, spin=speed * AXIS, hub="o")
