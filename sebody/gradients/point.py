@@ -60,8 +60,7 @@ class Point:
         for column, value in zip(self.columns, x, strict=True):
             found[column.name].reshape(-1)[column.component] = value
         for name, value in found.items():
-            self._handles[name].refuse(value[None], lambda _, name=name: name,
-                                       "; give the optimizer bounds")
+            self._handles[name].refuse(value[None], name, "; give the optimizer bounds")
         return found
 
     def _about(self, column: Column, values: dict[str, NDArray]) -> Handle:

@@ -83,11 +83,11 @@ class Handle:
         remedy = "give " + (f"an array (runs, {', '.join(map(str, self.base.shape))})"
                             if self.base.shape else "one number for each run")
         found = inputs.array(values, name, (None, *self.base.shape), remedy=remedy)
-        self.refuse(found, lambda run: f"{name} of run {run}")
+        self.refuse(found, name, of_runs=True)
         return found
 
-    def refuse(self, values: NDArray, what: Callable[[int], str], remedy: str = "") -> None:
-        """Refuse values outside the bounds, (runs, *shape); `what` names those of a run.
+    def refuse(self, values: NDArray, name: str, remedy: str = "", of_runs: bool = False) -> None:
+        """Refuse values outside the bounds, (runs, *shape); perhaps by the number of the run.
 
         Raises
         ------
@@ -99,8 +99,8 @@ class Handle:
             if bound is None or not (runs := np.argwhere(wrong(values, bound))).size:
                 continue
             run = int(runs[0][0])
-            raise InputError(f"{what(run)} is {inputs.shown(values[run])}: it must be {wanted} "
-                             f"{bound:g}{remedy}")
+            raise InputError(f"{name}{f' of run {run}' * of_runs} is {inputs.shown(values[run])}: "
+                             f"it must be {wanted} {bound:g}{remedy}")
 
 
 def attribute_of(owner: object, attribute: str, touches: str, base: NDArray | None = None,

@@ -258,8 +258,8 @@ class Simulation:
     def read(self, name: str) -> float | NDArray:
         """A quantity in the state reached, or what a sensor gave last.
 
-        Motion of nodes and modes, sensors and signals take about a microsecond, anything else
-        about a millisecond.
+        Motion of nodes and modes, sensors and signals take about a microsecond, what has a formula
+        less than ten, anything else about a millisecond.
 
         Raises
         ------

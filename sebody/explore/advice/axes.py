@@ -57,15 +57,15 @@ AXES = (
 )
 
 
-def contributions(recorded: Recorded, part: Part, form: Form) -> dict[str, float]:
+def indicated(recorded: Recorded, part: Part, form: Form) -> dict[str, float]:
     """Relative errors of the quantities that a form makes, by axis; zeros are left out."""
     axes = [axis for axis in AXES
             if axis.indicator is not None and (axis.name == "rigid") == form.rigid]
-    errors = {axis.name: _indicated(axis, recorded, part, form) for axis in axes}
+    errors = {axis.name: _of_axis(axis, recorded, part, form) for axis in axes}
     return {name: error for name, error in errors.items() if error > 0.0}
 
 
-def _indicated(axis: Axis, recorded: Recorded, part: Part, form: Form) -> float:
+def _of_axis(axis: Axis, recorded: Recorded, part: Part, form: Form) -> float:
     """The error of an indicator, the same for all forms that agree in what it depends on."""
     key = (axis.name, part.name, *(getattr(form, name) for name in axis.depends))
     if key not in recorded.indicated:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sebody.explore.advice.axes import contributions
+from sebody.explore.advice.axes import indicated
 from sebody.explore.advice.changes import Choice, Step
 from sebody.explore.advice.forms import Form, Part
 from sebody.explore.advice.indicators.recorded import Recorded
@@ -63,7 +63,7 @@ class Estimates:
         """What the indicators say of a form of the k-th part."""
         if (k, form) not in self._raw:
             part = self._parts[k]
-            self._raw[k, form] = {} if form == part.detailed else contributions(
+            self._raw[k, form] = {} if form == part.detailed else indicated(
                 self.recorded, part, form)
         return self._raw[k, form]
 
