@@ -13,11 +13,12 @@ from general_beam_cases import (
     twisted,
 )
 from numpy.testing import assert_allclose
+from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model
 from sebody.analysis import equilibrium, modes
-from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, circle
+from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, beam_along, circle
 from sebody.model.beams import part_bodies
 from sebody.model.variants import copied, divide, planar
 
@@ -176,3 +177,32 @@ def test_quantities_inside_a_blade_are_read_by_name():
     assert_allclose(np.linalg.norm(forces[3:]), np.linalg.norm(np.cross(lever, force)), rtol=0.02)
     with pytest.raises(InputError, match="of beams there are section_strains, section_forces"):
         result.field("beam 2").strain()
+
+
+@pytest.mark.parametrize(("case", "share", "error_of"), [
+    (composite, 0.02, 2e-4), (curved, 0.01, 2e-3)])
+def test_geometric_stiffness_is_what_nonlinear_beams_do_in_second_order(case, share, error_of):
+    """With the energy u^T G(u) u / 2 of third order, w_j = K^-1 e_j and u = K^-1 p the tip moves by
+    -(w_j^T G(u) u + u^T G(w_j) u / 2) beside u: as half the sum of what p and -p do.
+    """
+    axis, section, force = case()[:3]
+    force = share * np.array(force)
+    fe = beam_along(axis, section, 32)
+    held = splu(fe.stiffness[6:, 6:].tocsc())
+
+    def moved_by(load):
+        u = np.zeros(len(load))
+        u[6:] = held.solve(load[6:])
+        return u
+    unit = np.zeros((3, fe.stiffness.shape[0]))
+    unit[range(3), range(-6, -3)] = 1.0
+    u = moved_by(force @ unit)
+    second = np.zeros(3)
+    for k in range(3):
+        w = moved_by(unit[k])
+        second[k] = -(w @ (fe.geometric_stiffness(u) @ u)
+                      + u @ (fe.geometric_stiffness(w) @ u) / 2)
+    found = [sum(moved((axis, section, sign * force), count) for sign in (1, -1)) / 2
+             for count in (12, 24)]
+    exact = (4 * found[1] - found[0]) / 3
+    assert np.abs(second - exact).max() < error_of * np.abs(exact).max()
