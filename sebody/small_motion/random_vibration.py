@@ -4,9 +4,12 @@ Of inputs that do not depend on each other, with one-sided densities S_j, a quan
 
     S_i(f) = sum_j |H_ij(f)|^2 S_j(f),    rms^2 = integral of S_i df
 
-with H of `state_space`. The integrals are Gauss quadratures of POINTS nodes over panels between the
-rows of the tables, halved until none is longer than the distance of its centre from any pole of H
-in the complex plane, and from f = 0. Gauss's error then falls by ``(2 + sqrt 3)^-2`` with every
+with H of `state_space`, and of inputs that do with the terms ``H_ij* H_ik g_jk sqrt(S_j S_k)`` of
+all pairs, g_jk their complex coherence.
+
+The integrals are Gauss quadratures of POINTS nodes over panels between the rows of the tables,
+halved until none is longer than the distance of its centre from any pole of H in the complex plane,
+and from f = 0. Gauss's error then falls by ``(2 + sqrt 3)^-2`` with every
 node, however small the damping is. Upward zero crossings are ``sqrt(m_2 / m_0)`` in a unit of time,
 m_n the integral of ``f^n S df`` (S. O. Rice, Bell System Technical Journal 24, 1945, p. 46).
 """
@@ -35,6 +38,7 @@ SEEN = 1e-12        # part of a mode's vectors, of inputs and quantities, that i
 SHARE = 1e-9        # of the largest share of the response: no mode
 ZERO = 1e-6         # of the typical pole: those at zero are double, off by the root of rounding
 TINY = 1e-300
+COHERENT = 1e-9     # of the smallest eigenvalue of coherences, below zero, that is rounding
 DAMPED = 1e-9       # least part of critical damping that is more than rounding
 HEADS = "quantity", "rms", "zero crossings"
 
@@ -63,7 +67,9 @@ class RandomResponse(NamedTuple):
 
 def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLike],
                     quantities: str | Iterable[str], spin: ArrayLike | None = None,
-                    frame: str = "auto", hub: Node | str | None = None) -> RandomResponse:
+                    frame: str = "auto", hub: Node | str | None = None,
+                    coherence: Mapping[tuple[str, str], ArrayLike] | None = None
+                    ) -> RandomResponse:
     """Response of quantities to stationary random loads and base accelerations.
 
     Parameters
@@ -71,11 +77,11 @@ def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLik
     run : Simulation, Result or Model
         At rest or in steady rotation, as `equilibrium` leaves it; of a model, the state is that.
     psd : mapping of str to (rows, 2) array_like
-        One-sided power spectral densities by the names of inputs, which are independent of each
-        other. Rows are frequencies in cycles per unit of time (Hz where it is the second) and
-        densities; between rows a density is a power of the frequency, as in specifications of
-        vibration tests (straight in a log-log diagram); outside it is zero. Of a load, the density
-        is that of its amplitude [unit^2/Hz]. Of a prescribed motion or a drive (`move`), it is that
+        One-sided power spectral densities by the names of inputs. Rows are frequencies in cycles
+        per unit of time (Hz where it is the second) and densities; between rows a
+        density is a power of the frequency, as in specifications of vibration tests (straight in a
+        log-log diagram); outside it is zero. Of a load, the density is that of its amplitude
+        [unit^2/Hz]. Of a prescribed motion or a drive (`move`), it is that
         of the acceleration in units of the model [(m/s^2)^2/Hz, not g^2/Hz].
     quantities : str or iterable of str
         Names of quantities, as of a `Result`. Those with components are told by component, as
@@ -83,6 +89,12 @@ def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLik
         All are changes from the state of the run, of first order.
     spin, frame, hub
         Of a steady rotation, see `modes`.
+    coherence : mapping of (str, str) to complex, or to (rows, 2) complex array_like, optional
+        By pairs of inputs (a, b) the complex coherence ``S_ab / sqrt(S_a S_b)``, with S_ab the
+        cross-spectral density, the mean of ``conj(a) b``: a number, or rows of frequency and value,
+        linear between them and constant outside. Pairs that are left out are independent; 1 is
+        motion in phase, as of supports on one table, ``exp(-2j * pi * f * T)`` that of b after the
+        time T.
 
     Returns
     -------
@@ -92,8 +104,8 @@ def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLik
     Raises
     ------
     InputError
-        No such input or quantity, a wrong table, a motion without damping in the range of the
-        tables, or one that grows.
+        No such input or quantity, a wrong table, coherences that no motions have, a
+        motion without damping in the range of the tables, or one that grows.
     """
     tables = {name: _table(name, rows) for name, rows in inputs.mapping(
         psd, "psd", "give tables (frequency, density) by the names of inputs").items()}
@@ -102,14 +114,23 @@ def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLik
     run = state_of(run, spin)
     _refuse_crooked(run, quantities)
     system = state_space(run, list(tables), quantities, spin, frame, hub)
+    pairs = _coherences(coherence, list(tables))
     rows = np.unique(np.concatenate([table[:, 0] for table in tables.values()]))
+    inner = np.concatenate([rows, *(pair.frequencies for pair in pairs)])
+    rows = np.unique(inner[(inner >= rows[0]) & (inner <= rows[-1])])
     f, weights = _nodes(rows, _poles(system, rows) / (2 * np.pi))
-    squares = np.zeros((len(f), len(system.outputs)))
+    answers = []        # of each input, times the root of its density: (len(f), outputs)
     for j, table in enumerate(tables.values()):
         inside = (f > table[0, 0]) & (f < table[-1, 0])
         density = np.exp(np.interp(np.log(f[inside]), *np.log(table).T))
-        squares[inside] += (np.abs(_responses(system, j, 2 * np.pi * f[inside]))**2
-                            * density[:, None])
+        answers.append(np.zeros((len(f), len(system.outputs)), dtype=complex))
+        answers[-1][inside] = (_responses(system, j, 2 * np.pi * f[inside])
+                               * np.sqrt(density)[:, None])
+    squares = np.sum(np.abs(answers)**2, axis=0)
+    for pair in pairs:
+        squares += 2.0 * np.real(answers[pair.first].conj() * answers[pair.second]
+                                 * pair.at(f)[:, None])
+    squares = np.maximum(squares, 0.0)      # rounding, where answers cancel
     m0, m2 = weights @ squares, (weights * f**2) @ squares
     crossings = np.sqrt(m2 / np.where(m0 > 0.0, m0, 1.0))
     return RandomResponse(f, dict(zip(system.outputs, squares.T, strict=True)),
@@ -143,6 +164,66 @@ def _table(name: Any, rows: ArrayLike) -> NDArray:
         raise InputError(f"{what} needs two rows or more, of ascending frequencies and of "
                          "densities that are all positive: in log-log diagrams there is no zero")
     return table
+
+
+class _Pair(NamedTuple):
+    """Two inputs by number, and their complex coherence over the frequency."""
+
+    first: int
+    second: int
+    frequencies: NDArray
+    values: NDArray
+
+    def at(self, f: NDArray) -> NDArray:
+        """Coherence at frequencies."""
+        return (np.interp(f, self.frequencies, self.values.real)
+                + 1j * np.interp(f, self.frequencies, self.values.imag))
+
+
+def _coherences(given: Mapping[tuple[str, str], ArrayLike] | None, names: list[str]
+                ) -> list[_Pair]:
+    """Pairs of inputs that depend on each other.
+
+    Raises
+    ------
+    InputError
+        Names that are no pair of inputs, values that are no table, or coherences that are too
+        large together.
+    """
+    pairs: list[_Pair] = []
+    remedy = "give a complex number, or rows (frequency, complex number), by pairs of inputs"
+    for pair, value in ({} if given is None else
+                        inputs.mapping(given, "coherence", remedy)).items():
+        what = f"coherence of {inputs.shown(pair)}"
+        if (not isinstance(pair, tuple) or len(pair) != 2 or pair[0] == pair[1]
+                or not all(name in names for name in pair)):
+            raise InputError(f"{what}: name two inputs that have a psd, {', '.join(names)}")
+        try:
+            table = np.array(value, dtype=complex)
+        except (TypeError, ValueError) as error:
+            raise inputs.refusal(what, value, remedy) from error
+        table = np.array([[1.0, table]]) if table.ndim == 0 else table
+        if (table.ndim != 2 or table.shape[1] != 2 or not len(table) or not np.isfinite(table).all()
+                or np.any(table[:, 0].imag) or np.any(np.diff(table[:, 0].real) <= 0.0)):
+            raise inputs.refusal(what, value, remedy + ", frequencies ascending")
+        pairs.append(_Pair(*map(names.index, pair), table[:, 0].real, table[:, 1]))
+    if len({frozenset(pair[:2]) for pair in pairs}) < len(pairs):
+        raise InputError("coherence: a pair of inputs is given twice: give one order alone")
+    _refuse_impossible(pairs, names)
+    return pairs
+
+
+def _refuse_impossible(pairs: list[_Pair], names: list[str]) -> None:
+    """Refuse coherences whose matrix is not positive at some frequency: between rows it is then."""
+    for f in np.unique(np.concatenate([[1.0], *(pair.frequencies for pair in pairs)])):
+        matrix = np.eye(len(names), dtype=complex)
+        for pair in pairs:
+            value = complex(pair.at(np.array([f]))[0])
+            matrix[pair.first, pair.second] = value
+            matrix[pair.second, pair.first] = value.conjugate()
+        if np.linalg.eigvalsh(matrix)[0] < -COHERENT:
+            raise InputError(f"coherence at the frequency {f:.6g}: no motions have such values "
+                             "together, since their matrix is not positive: give smaller ones")
 
 
 def _poles(system: StateSpace, rows: NDArray) -> NDArray:

@@ -164,7 +164,7 @@ ANALYSIS = {
     "effective_masses": Call(an.effective_masses, lambda: {"run": hanging(), "count": 1}),
     "random_response": Call(an.random_response, lambda: {
         "run": damped(), "psd": {"push": [(0.1, 1.0), (3.0, 2.0)]}, "quantities": "ball.position",
-        "spin": None, "frame": "auto", "hub": None}),
+        "spin": None, "frame": "auto", "hub": None, "coherence": None}),
     "shock_spectrum": Call(an.shock_spectrum, lambda: {
         "t": [0.0, 1.0, 2.0], "acceleration": [0.0, 1.0, 0.0], "frequencies": [0.5, 2.0, 4.0, 5.0],
         "damping": 0.05}),

@@ -208,3 +208,42 @@ def test_what_is_refused():
         random_response(run, {"shove": flat}, "weight.position")
     with pytest.raises(InputError, match="at least one input"):
         random_response(run, {}, "weight.position")
+
+
+def coherent(values):
+    """Two forces along a spring, of the densities 2 and 3, with some coherence."""
+    model = oscillator(0.05)
+    model.force("weight", ALONG, NONE, name="pull")
+    tables = {"push": [(1.0, 2.0), (9.0, 2.0)], "pull": [(1.0, 3.0), (9.0, 3.0)]}
+    return random_response(equilibrium(model, 2), tables, "weight.position.x", coherence=values)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_inputs_that_depend_on_each_other(order):
+    """``S = |H|^2 (S_a + S_b + 2 Re(g) sqrt(S_a S_b))``: g is a number, or changes linearly."""
+    name, pair = "weight.position.x", ("push", "pull")[::order]
+    apart = coherent(None)
+    for value in (1.0, -0.4, 0.3 + 0.6j, 1j):
+        found = coherent({pair: value})
+        factor = 1.0 + 2.0 * np.real(value) * np.sqrt(6.0) / 5.0
+        assert found.rms[name] == pytest.approx(apart.rms[name] * np.sqrt(factor), rel=1e-9)
+    rows = [(2.0, 0.5), (6.0, -0.5 + 0.2j)]
+    found = coherent({pair: rows})
+    own = np.interp(found.frequency, (2.0, 6.0), (0.5, -0.5))
+    w = 2.0 * np.pi * found.frequency
+    answer = ALONG[0] / (STIFFNESS - MASS * w**2 + 0.1j * OMEGA * MASS * w)
+    assert_allclose(found.psd[name], np.abs(answer)**2 * (5.0 + 2.0 * own * np.sqrt(6.0)),
+                    rtol=1e-8)
+
+
+def test_coherences_that_no_motions_have():
+    for values, said in (
+            ({("push", "pull"): 1.2}, "coherence at the frequency 1: no motions have such values"),
+            ({("push", "push"): 0.1}, "name two inputs that have a psd, push, pull"),
+            ({("push", "x"): 0.1}, "name two inputs that have a psd"),
+            ({("push", "pull"): [(2.0, 0.1), (1.0, 0.2)]}, "frequencies ascending"),
+            ({("push", "pull"): "x"}, "give a complex number"),
+            ({("push", "pull"): 0.1, ("pull", "push"): 0.1}, "a pair of inputs is given twice"),
+            (3, "give a complex number, or rows")):
+        with pytest.raises(InputError, match=said):
+            coherent(values)
