@@ -67,8 +67,8 @@ def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance |
     Raises
     ------
     SimulationError
-        A run fails, or the error does not fall: the motion may be chaotic. The last run is the
-        `result` of the exception.
+        A run fails, or the error does not fall: the motion may be chaotic, or friction breaks away
+        irregularly. The last run is the `result` of the exception.
     Interrupted
         Ctrl-C; the last whole run is the `result`, or what there is of the first one.
     """
@@ -102,9 +102,12 @@ def _refined(model: Model, h: float, t_end: float, wanted: Tolerance, scheme: Sc
                 and differences[-1] > HOPELESS * max(differences[-4:-1])):
             raise SimulationError(
                 "the error does not decrease with the step: it stays at "
-                f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. The motion may "
-                "be chaotic, so that only its beginning can be computed: use a larger tolerance "
-                "or an earlier end", now)
+                f"{differences[-1]:.3g} times the tolerance with {now.steps} steps. "
+                + ("The motion may be chaotic, so that only its beginning can be computed: use a "
+                   "larger tolerance or an earlier end" if smooth else
+                   "When friction breaks away or teeth meet is known to the first order in the "
+                   "step, and irregularly: use a larger tolerance, or an earlier end where "
+                   "the motion is chaotic"), now)
         before = now
         divisors.append(divisors[-1] * min(max(np.sqrt(last.error / AIM), LEAST), MOST))
 

@@ -43,8 +43,8 @@ def column(slenderness: float, share: float, side: float, bodies: int) -> Model:
     model = Model()
     foot, tip = model.node("foot", (0.0, 0.0, 0.0)), model.node("tip", (1.0, 0.0, 0.0))
     model.fix(foot)
-    model.beam("column", (foot, tip), section, 16, bodies, {1: 4, 4: 4, 16: 0}[bodies],
-               up=(0.0, 0.0, 1.0))
+    elements, modes = {1: (16, 4), 4: (16, 4), 16: (32, 2)}[bodies]
+    model.beam("column", (foot, tip), section, elements, bodies, modes, up=(0.0, 0.0, 1.0))
     model.force(tip, (-load, side * load, 0.0))
     return model
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from sebody import Model, Simulation, simulate
+from sebody import Model, Simulation, SimulationError, simulate
 from sebody.model.extent import extent
+from sebody.runs import accuracy
 from sebody.runs.accuracy import difference, estimated, simulate_within
 from sebody.runs.tolerance import Tolerance
 from sebody.scenes import stick_slip
@@ -122,6 +123,13 @@ def test_friction_converges_on_any_output_grid(grid):
         result, x, exact = belt(grid, tolerance)
         allowed = tolerance * extent(result.model)
         assert np.sqrt(np.mean((x - exact)**2)) <= allowed
+
+
+def test_errors_of_friction_that_do_not_fall_are_not_called_chaos(monkeypatch):
+    monkeypatch.setattr(accuracy, "difference", lambda *_: 2.0)
+    with pytest.raises(SimulationError, match="does not decrease with the step: it stays at 2 .*"
+                                              "friction breaks away.* larger tolerance"):
+        belt(0.02, 1e-2)
 
 
 def test_bristles_stiffen_with_the_tolerance():
