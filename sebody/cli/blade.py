@@ -42,10 +42,10 @@ def run(options: argparse.Namespace) -> int:
         check_target(target, *TARGET)
     blade = read_beamdyn(options.file)
     model = Model(units=blade.units)
-    ends = tuple(model.node(name, blade.axis.position(place))
+    root, tip = (model.node(name, blade.axis.position(place))
                  for name, place in (("root", 0.0), ("tip", 1.0)))
     elements = options.elements or options.bodies * max(FINE, 2 * options.modes)
-    model.beam("blade", ends, blade.section, elements, options.bodies, options.modes,
+    model.beam("blade", (root, tip), blade.section, elements, options.bodies, options.modes,
                axis=blade.axis, divide=options.divide)
     beam = model.beams[-1]
     print(f"blade: {blade.source}, {len(blade.section.places)} stations, "

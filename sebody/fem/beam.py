@@ -160,7 +160,7 @@ def _beam_model(
         ends = np.zeros((2, 3))
         ends[:, :nodes.shape[1]] = nodes[[own[0, 0], own[-1, 1]]]
         turn = section_axes(ends[1] - ends[0], up)
-        line = Straight(*ends, turn.T)
+        line = Straight(ends[0], ends[1], turn.T)
         rules = rules_of(line, section, places)
         exact = [i for i, one in enumerate(rules) if not _has_closed_form(one)]
         uniform += [k * elements + i for i, one in enumerate(rules) if _has_closed_form(one)]
@@ -232,7 +232,7 @@ def beam_along(axis: Axis, section: AnySection, elements: int | ArrayLike) -> FE
     """
     inputs.instance(axis, "axis", Axis, "give an Axis")
     if np.ndim(elements) == 0:
-        places = np.linspace(0, 1, _count(elements) + 1)
+        places = np.linspace(0, 1, _count(inputs.integer(elements, "elements", least=1)) + 1)
     else:
         remedy = "give a number of elements, or two places at least that ascend from 0 to 1"
         places = inputs.vector(elements, "elements: places", remedy=remedy)

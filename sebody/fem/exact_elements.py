@@ -132,7 +132,7 @@ def _rule(line: Line, section: AnySection, kinks: NDArray, first: float, last: f
     at = np.concatenate(places)
     if callable(section):
         found = [section_at(section, float(place)) for place in at]
-        at_ends = tuple(section_at(section, float(place)) for place in (first + near, last - near))
+        at_ends = section_at(section, first + near), section_at(section, last - near)
     else:
         one = section_at(section, 0.0)
         found, at_ends = [one] * len(at), (one, one)

@@ -163,7 +163,7 @@ def central_inertia(mass: NDArray) -> NDArray:
 def _symmetric(matrix: NDArray, what: str, names: Sequence[str]) -> NDArray:
     unlike = np.abs(matrix - matrix.T)
     scale = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix))))
-    i, j = np.unravel_index(np.argmax(unlike - SYMMETRIC * scale), unlike.shape)
+    i, j = map(int, np.unravel_index(np.argmax(unlike - SYMMETRIC * scale), unlike.shape))
     if unlike[i, j] > SYMMETRIC * scale[i, j]:
         raise InputError(f"{what} is not symmetric: [{names[i]}, {names[j]}] = "
                          f"{matrix[i, j]:.6g} but [{names[j]}, {names[i]}] = {matrix[j, i]:.6g}: "
@@ -234,12 +234,12 @@ class Stations:
 
         def between(a: ArrayLike, b: ArrayLike) -> NDArray:
             return (1 - part) * np.asarray(a) + part * np.asarray(b)
-        outline, fibres = None, ()
+        outline, fibres = None, tuple[Fibre, ...]()
         if first.outline and last.outline and len(first.outline) == len(last.outline):
             outline = tuple(map(tuple, between(first.outline, last.outline).tolist()))
         if len(first.fibres) == len(last.fibres):
             fibres = tuple(Fibre(float(between(a.y, b.y)), float(between(a.z, b.z)),
-                                 between(a.stress, b.stress))
+                                 tuple(map(tuple, between(a.stress, b.stress).tolist())))
                            for a, b in zip(first.fibres, last.fibres, strict=True))
         return GeneralSection(between(first.stiffness, last.stiffness),
                               between(first.mass, last.mass), outline, fibres,

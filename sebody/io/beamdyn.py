@@ -157,11 +157,11 @@ def _key_points(path: Path, lines: list[str]) -> tuple[NDArray, NDArray, list[in
                     f"{total}", "members that meet share a key point, so they have "
                     f"{total + members - 1} in all")
     rows = []
-    for at, words in _rows(path, lines, number + members, total, "key points"):
-        if len(words) != 4:
-            raise fault(path, at, f"a key point has {len(words)} numbers",
+    for at, values in _rows(path, lines, number + members, total, "key points"):
+        if len(values) != 4:
+            raise fault(path, at, f"a key point has {len(values)} numbers",
                         "give kp_xr, kp_yr, kp_zr and initial_twist")
-        rows.append(words)
+        rows.append(values)
     table = np.array(rows)
     return table[:, :3], table[:, 3], np.cumsum(np.array(counts) - 1)[:-1].tolist()
 
@@ -233,14 +233,14 @@ def _stations(path: Path) -> Stations:
         _check_symmetry(named, "mass", M)
         turned = np.ix_(ORDER, ORDER)
         sections.append(GeneralSection(K[turned], M[turned], retardation=mu[ORDER], name=named))
-    at = np.array(places)
-    if total < 2 or abs(at[0]) > 1e-9 or abs(at[-1] - 1) > 1e-9 or (np.diff(at) <= 0).any():
-        wrong = next((k for k in range(1, total) if at[k] <= at[k - 1]), total - 1)
-        raise InputError(f"{path}: stations have places from {at[0]:g} to {at[-1]:g}, the one of "
-                         f"station {wrong + 1} is {at[wrong]:g}: give two at least that ascend "
+    eta = np.array(places)
+    if total < 2 or abs(eta[0]) > 1e-9 or abs(eta[-1] - 1) > 1e-9 or (np.diff(eta) <= 0).any():
+        wrong = next((k for k in range(1, total) if eta[k] <= eta[k - 1]), total - 1)
+        raise InputError(f"{path}: stations have places from {eta[0]:g} to {eta[-1]:g}, the one of "
+                         f"station {wrong + 1} is {eta[wrong]:g}: give two at least that ascend "
                          "from 0 to 1, parts of the length")
-    at[[0, -1]] = 0.0, 1.0
-    return Stations(at, sections)
+    eta[[0, -1]] = 0.0, 1.0
+    return Stations(eta, sections)
 
 
 def _check_symmetry(named: str, what: str, matrix: NDArray) -> None:

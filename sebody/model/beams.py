@@ -180,11 +180,11 @@ def _bodies(course: Course, places: NDArray, each: int, modes: int, times: Times
     Along its own axes stretching and bending of a straight beam are not mixed, so slender ones
     lose no digits.
     """
-    made: dict = {}
+    made: dict[int, ReducedBody] = {}
     for piece in (pieces := _pieces(course, places, each)):
-        if piece not in made:
-            made[piece] = _placed(course.turn, piece, modes, times)
-    return [made[piece] for piece in pieces]
+        if id(piece) not in made:
+            made[id(piece)] = _placed(course.turn, piece, modes, times)
+    return [made[id(piece)] for piece in pieces]
 
 
 def _pieces(course: Course, places: NDArray, each: int) -> list[StraightPiece | AxisPiece]:
@@ -192,7 +192,8 @@ def _pieces(course: Course, places: NDArray, each: int) -> list[StraightPiece | 
     pieces = [course.piece(a, b, each) for a, b in pairwise(places.tolist())]
     first = pieces[0]
     if isinstance(first, StraightPiece) and not callable(course.section):
-        pieces = [first if abs(one.length - first.length) < 1e-12 * first.length else one
+        pieces = [first if isinstance(one, StraightPiece)
+                  and abs(one.length - first.length) < 1e-12 * first.length else one
                   for one in pieces]
     return pieces
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sebody import InputError, Model, WriteError
-from sebody.fem import Section, hexahedral_block, planar_beam
+from sebody.fem import Section, hexahedral_block, planar_beam, rectangle, straight_beam
 from sebody.io import load_body, read_body_file, save_body
 from sebody.reduction import RigidFace, craig_bampton
 
@@ -134,3 +134,28 @@ def test_a_failure_leaves_the_older_file(tmp_path, monkeypatch):
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1
     with pytest.raises(InputError, match="names is .'a', 'a'.: give 2 different names"):
         save_body(block(), path, ("a", "a"))
+
+
+def test_stresses_of_files_from_before_sections_differed_within_elements(tmp_path):
+    """Fibres were those of both ends, and no flexibilities of sections were kept."""
+    fe = straight_beam((0, 0, 0), (2.0, 0, 0), rectangle(0.1, 0.05, 2e11, 0.3, 7800.0), 3)
+    body = craig_bampton(fe, [(0, "full"), (3, "full")], 1)
+    new, old = tmp_path / "new.npz", tmp_path / "old.npz"
+    save_body(body, new)
+    with np.load(new) as file:
+        arrays = {name: file[name] for name in file.files if name != "notes"}
+        notes = json.loads(str(file["notes"]))
+    for name in ("fibres", "offsets"):
+        arrays[f"recovery.stress/0/{name}"] = arrays[f"recovery.stress/0/{name}"][:, 0]
+    del arrays["recovery.stress/0/flexibility"]
+    del notes["body"]["recovery.stress"][0]["fields"]["flexibility"]
+    notes["checksums"] = {}
+    np.savez(old, notes=np.array(json.dumps(notes)), **arrays)
+    file = read_body_file(old)
+    stress, wanted = file.parts["recovery"].stress[0], body.recovery.stress[0]
+    assert np.array_equal(stress.fibres, wanted.fibres)
+    assert np.array_equal(stress.offsets, wanted.offsets)
+    u = np.random.default_rng(1).normal(size=(4, 6, 1))
+    assert np.array_equal(stress.stress(u), wanted.stress(u))
+    with pytest.raises(InputError, match="section strains are unknown: the body file was written"):
+        stress.section_strains(u)

@@ -16,8 +16,8 @@ from numpy.testing import assert_allclose
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model
-from sebody.analysis import equilibrium, modes
+from sebody import InputError, Model, simulate
+from sebody.analysis import equilibrium, final, gradient, modes, sections
 from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, beam_along, circle
 from sebody.model.beams import part_bodies
 from sebody.model.variants import copied, divide, planar
@@ -206,3 +206,25 @@ def test_geometric_stiffness_is_what_nonlinear_beams_do_in_second_order(case, sh
              for count in (12, 24)]
     exact = (4 * found[1] - found[0]) / 3
     assert np.abs(second - exact).max() < error_of * np.abs(exact).max()
+
+
+def test_gradients_by_the_sections_of_a_blade():
+    """Exact derivatives by a factor of all stiffnesses against differences of runs."""
+    axis, stations, force = softening()
+
+    def section(x):
+        return Stations(stations.places, [GeneralSection(x[0] * one.stiffness, one.mass)
+                                          for one in stations.sections])
+    model, _ = cantilever((axis, stations, force), 12, 2, 2, divide="rotation")
+    names = "tip.position.z", "beam 2.node0.section_strains.0.4"
+    found = gradient(model, 0.02, 0.2, {name: final(name) for name in names},
+                     [sections(model, "beam", [1.0], section)])
+    values = []
+    for factor in (1 - 1e-4, 1 + 1e-4):
+        other, _ = cantilever((axis, section([factor]), force), 12, 2, 2,
+                              divide=model.beams[0].places)
+        result = simulate(other, 0.02, 0.2)
+        values.append([result["tip.position"][-1, 2],
+                       result["beam 2.node0.section_strains"][-1, 0, 4]])
+    differences = np.subtract(*values[::-1]) / 2e-4
+    assert_allclose(found.matrix[:, 0], differences, rtol=1e-5)     # h^2, and rounding / h
