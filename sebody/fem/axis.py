@@ -136,7 +136,8 @@ class Axis:
             if steepest >= (VERTICAL if straight else STEEP):
                 return np.array([0.0, 0, 1]), True
             up = np.array([0.0, 1.0, 0.0])
-        name, given = ("up", up) if up is not None else ("side", side)
+        name, given = ("side", side) if up is None else ("up", up)
+        assert given is not None
         vector = inputs.vector(given, f"Axis: {name}", 3)
         vector = vector / max(np.linalg.norm(vector), np.finfo(float).tiny)
         along = np.linalg.norm(np.cross(vector, x), axis=1)

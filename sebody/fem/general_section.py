@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -239,7 +240,7 @@ class Stations:
             outline = tuple(map(tuple, between(first.outline, last.outline).tolist()))
         if len(first.fibres) == len(last.fibres):
             fibres = tuple(Fibre(float(between(a.y, b.y)), float(between(a.z, b.z)),
-                                 tuple(map(tuple, between(a.stress, b.stress).tolist())))
+                                 cast(Any, between(a.stress, b.stress).tolist()))
                            for a, b in zip(first.fibres, last.fibres, strict=True))
         return GeneralSection(between(first.stiffness, last.stiffness),
                               between(first.mass, last.mass), outline, fibres,
