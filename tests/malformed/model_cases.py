@@ -186,6 +186,9 @@ BODIES = {
         "up": [pair for pair in vectors("up", 3) if pair[0] is not None] + [
             (Y, "lies along a beam")],
         "damping": are("beam 'new': damping", *NO_NUMBER, -1.0, also=": give a ratio of critical"),
+        "axis": have("axis of beam 'new'", 3, "x", [X, Y]),
+        "divide": have("beam 'new': divide", None, 3, "turns", [0.0, 1.0], [0.0, 2.0, 1.0],
+                       ["0", "0.5", "1"]),
         "frame": have("frame", "middle", 3), "inertia": have("inertia", "z")}),
     "element": Right(Model.element, {"name": "ball"}, {
         "name": have("is unknown", "bal", "", None, 3, [])}),
