@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from malformed.public_calls import CALLS, JUNK, junk
 
-from sebody import Result, SebodyError, Simulation
+from sebody import Model, Result, SebodyError, Simulation
 
 EACH = 6        # one of so many values is tried at each argument, another one at the next
 NUMBERS = int, float, np.number
@@ -19,6 +19,8 @@ LISTS = list, tuple, dict, set, np.ndarray
 def alike(value, right):
     """Whether a value is of the kind of a right one, so that it may be right, too."""
     if isinstance(value, Result) and isinstance(right, Simulation | list):     # it lists its names
+        return True
+    if isinstance(value, Model) and isinstance(right, Simulation):      # for its equilibrium
         return True
     for kinds in (bool, NUMBERS, str, LISTS):
         if isinstance(right, kinds) or isinstance(value, bool):
