@@ -12,12 +12,13 @@ import difflib
 import os
 import sys
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
 import sebody.generated
 from sebody.basics.files import replacing
+from sebody.basics.progress import Progress
 from sebody.contract.names import PREFIXES, motion_name
 from sebody.contract.names import PRODUCTS as OF_PRODUCTS
 from sebody.derive.compiler import Products, Variant, compile_kernel, file_name
@@ -58,8 +59,22 @@ def files(kernels: Iterable[Variant | Products | str], shipped: bool = True) -> 
     seconds = sum(SECONDS[type(kernel)] for kernel in kernels) / processes
     print(f"deriving {len(kernels)} kernels in {processes} processes, about {seconds:.0f} s",
           file=sys.stderr, flush=True)
+    done: dict[str, str] = {}
+    bar = Progress()
     with ProcessPoolExecutor(processes) as pool:
-        return dict(zip(names, pool.map(compiled, kernels), strict=True))
+        tasks = {pool.submit(compiled, kernel): name for name, kernel in sorted(
+            zip(names, kernels, strict=True), key=lambda one: _length(one[0]), reverse=True)}
+        for task in as_completed(tasks):
+            done[tasks[task]] = task.result()
+            bar(len(done) / len(kernels))
+    bar.close()
+    return {name: done[name] for name in names}
+
+
+def _length(name: str) -> float:
+    """Letters of a kernel that is there: the longest ones are derived first."""
+    path = Path(sebody.generated.__file__).with_name(name)
+    return path.stat().st_size if path.exists() else float("inf")
 
 
 def _with_motions(kernels: Iterable[Variant | str]) -> list[Variant | str]:

@@ -40,12 +40,41 @@ def differential(expression: sp.Expr | sp.Matrix, rules: Mapping[sp.Symbol, sp.E
     # one directional derivative keeps products factored where partial derivatives multiply out
     step = sp.Dummy("step")
     moved = {s: s + step * rules[s] for s in entry.free_symbols if s in rules and rules[s] != 0}
-    return entry.xreplace(moved).diff(step).subs(step, 0) if moved else sp.S.Zero
+    return derivative(entry.xreplace(moved), step).subs(step, 0) if moved else sp.S.Zero
+
+
+def derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """Derivative by a symbol, in the form that `sympy.diff` gives, once for each subexpression.
+
+    `diff` takes those that occur several times as often as they occur, and asks each time again for
+    its free symbols: minutes where bodies are coupled.
+    """
+    known: dict[sp.Expr, sp.Expr] = {}
+
+    def of(node: sp.Expr) -> sp.Expr:
+        if node not in known:
+            known[node] = taken(node)
+        return known[node]
+
+    def taken(node: sp.Expr) -> sp.Expr:
+        if not node.args:
+            return sp.S.One if node == symbol else sp.S.Zero
+        if isinstance(node, sp.Add):
+            return sp.Add(*map(of, node.args))
+        if isinstance(node, sp.Mul):
+            args = node.args
+            return sp.Add(*(sp.Mul(*args[:k], by, *args[k + 1:])
+                            for k, arg in enumerate(args) if (by := of(arg)) != 0))
+        if isinstance(node, sp.Pow):
+            base, exponent = node.args
+            return node * (of(exponent) * sp.log(base) + of(base) * exponent / base)
+        return node.diff(symbol)
+    return of(sp.sympify(expression))
 
 
 def coefficients(form: sp.Expr, variables: sp.Matrix) -> sp.Matrix:
     """Coefficients of a linear form, as a column: ``form = coefficients . variables + rest``."""
-    return sp.Matrix([sp.diff(form, v) for v in variables])
+    return sp.Matrix([derivative(form, v) for v in variables])
 
 
 def check_same(name: str, short: sp.Matrix, chain: sp.Matrix,

@@ -111,7 +111,7 @@ def _steps(trial: "Trial") -> str:
 def _advised(options: argparse.Namespace, scene: "Scene") -> "Advice":
     """The advice, also of a search that Ctrl-C has ended."""
     from sebody.analysis import advise
-    from sebody.runs.progress import Progress
+    from sebody.basics.progress import Progress
 
     bar = Progress()
 

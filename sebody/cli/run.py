@@ -81,7 +81,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     They are written before anything is printed: whoever reads may stop reading.
     """
-    from sebody.runs.progress import Progress
+    from sebody.basics.progress import Progress
 
     warnings.simplefilter("ignore", LimitWarning)   # they are printed after the summary
     t_end = _t_end(scene, options)

@@ -60,9 +60,9 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
 
 def run(options: argparse.Namespace) -> int:
     """Run the sweep; 1 if all of its runs fail."""
+    from sebody.basics.progress import Progress
     from sebody.explore.sweep import sobol, sweep
     from sebody.explore.sweep.variations import distribution_of, values_of
-    from sebody.runs.progress import Progress
 
     build, _, _ = source(options.scene)
     listed = _by_name("--vary", map(values_of, options.vary))

@@ -196,7 +196,7 @@ def compile_controller(name: str, source: Source, sizes: tuple[int, int, int, in
     InputError
         Numba cannot compile it.
     """
-    made = ControlFunction(source.function, sizes)
+    made = ControlFunction(source.function, sizes, results.rates or 0)
     try:
         _compile(made, CONTROLLER, _controller, source, sizes, results)
     except Exception as error:

@@ -76,11 +76,13 @@ class ControlFunction(UserFunction):
     ----------
     sizes : tuple of int
         Of y, x, u and the parameters.
+    rates : int
+        How many of the results are rates of x, before those in u: of a continuous law.
     """
 
-    def __init__(self, function: Callable, sizes: tuple[int, int, int, int]):
+    def __init__(self, function: Callable, sizes: tuple[int, int, int, int], rates: int = 0):
         super().__init__(function, 1 + sum(sizes))
-        self.sizes = sizes
+        self.sizes, self.rates = sizes, rates
 
     def fault(self, since: float, until: float = np.inf) -> str:
         """The last fault of the controller, with its time, in words; empty if at another time."""
@@ -93,8 +95,14 @@ class ControlFunction(UserFunction):
         try:
             with np.errstate(all="ignore"):
                 self.interpreted(t, *inputs)
-            did = f"gave u = {shown(inputs[2])}" if not np.isfinite(inputs[2]).all() else (
-                f"gave states {shown(inputs[1])}")
+            did = f"gave {self._shown(inputs)}"
         except Exception as error:      # whatever the user's function raises
             did = f"raised {type(error).__name__}: {error}"
         return f"{did} at t = {t:.6g}"
+
+    def _shown(self, inputs: list[np.ndarray]) -> str:
+        """The results that are not finite, rates before what is in u; else the states."""
+        found = {"rates": inputs[2][:self.rates], "u": inputs[2][self.rates:]}
+        wrong = [f"{name} = {shown(values)}" for name, values in found.items()
+                 if not np.isfinite(values).all()]
+        return " and ".join(wrong) or f"states {shown(inputs[1])}"

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from sebody.assembly.numbering import placed, rotational
 from sebody.basics import inputs
 from sebody.basics.errors import Interrupted, LimitWarning, SimulationError
+from sebody.basics.progress import showing
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.runs.planning import LOGGED, Plan, planned
-from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance, given
 

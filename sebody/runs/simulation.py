@@ -14,6 +14,7 @@ from sebody.assembly.build import build
 from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
+from sebody.basics.progress import showing
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
@@ -33,7 +34,6 @@ from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
 from sebody.runs.planning import LOGGED, Plan, StepLog, planned
-from sebody.runs.progress import showing
 from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from sebody import InputError
+from sebody.basics import progress
 from sebody.cli import interrupts, run
 from sebody.cli.entry import main
-from sebody.runs import progress
 from sebody.scenes import hinged_beam
 
 LONG = ["run", "hinged-beam", "--t-end", "1e6", "--every", "10000"]     # minutes
@@ -54,7 +54,7 @@ def test_a_signal_ends_the_run_and_keeps_its_results(tmp_path, capsys, monkeypat
 
 def test_a_process_ends_soon_after_a_signal(tmp_path, capsys):
     code = ("import signal, sys\n"
-            "from sebody.runs import progress\nfrom sebody.cli import entry\n"
+            "from sebody.basics import progress\nfrom sebody.cli import entry\n"
             "progress.Progress.__call__ = lambda bar, fraction: print(flush=True)\n"
             "sys.exit(entry.main(sys.argv[1:]))")
     process = subprocess.Popen([sys.executable, "-c", code, *LONG, *files(tmp_path)],

@@ -12,9 +12,9 @@ from types import SimpleNamespace
 import pytest
 
 from sebody import InputError, simulate
+from sebody.basics import progress
 from sebody.pictures.notebook import Page, ShownFile
 from sebody.results import animate, plot
-from sebody.runs import progress
 from sebody.scenes import hinged_beam
 
 

@@ -7,7 +7,7 @@ from contextlib import redirect_stderr
 import pytest
 
 from sebody import InputError, Simulation, Tolerance, simulate, simulate_within
-from sebody.runs import progress
+from sebody.basics import progress
 from sebody.scenes import hinged_beam
 
 

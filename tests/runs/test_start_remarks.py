@@ -9,10 +9,10 @@ import pytest
 
 from sebody import InputError, LimitWarning, Model, Simulation, simulate
 from sebody.analysis import Ensemble
+from sebody.basics import progress
 from sebody.fem import Section, planar_beam, straight_beam
 from sebody.model.ties import untied
 from sebody.reduction import craig_bampton
-from sebody.runs import progress
 
 SECTION = Section(area=1.0, inertia_y=1e-2, inertia_z=2e-2, torsion=3e-2, youngs_modulus=3e4,
                   poisson_ratio=0.3, density=1.0)

@@ -6,6 +6,7 @@ import numpy as np
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.basics.progress import showing
 from sebody.explore.advice.first_runs import run_first
 from sebody.explore.advice.limits import include, refusal
 from sebody.explore.advice.measures import absolute
@@ -16,7 +17,6 @@ from sebody.explore.advice.runner import Laboratory
 from sebody.explore.advice.runs import Runs
 from sebody.explore.advice.search import Search
 from sebody.model.model import Model
-from sebody.runs.progress import showing
 from sebody.runs.steps import check_steps
 
 STEPS = 128         # of a run whose step is not given

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
+from sebody.basics.progress import showing
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.choice import WORTH_IT, why_one_by_one, why_parameters_part
 from sebody.explore.ensembles.outcome import Outcome
@@ -26,7 +27,6 @@ from sebody.reduction import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.fingerprint import whole
 from sebody.runs.outputs import Form, Output, forms, outputs_of
-from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
 from sebody.runs.user_faults import refuse_changed

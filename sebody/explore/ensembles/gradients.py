@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning, SimulationError
+from sebody.basics.progress import showing
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.explore.ensembles.ensemble import Values
@@ -29,7 +30,6 @@ from sebody.model.variants.copying import copied
 from sebody.parameters.table import checked_values
 from sebody.runs.failures import KEPT
 from sebody.runs.outputs import Output, forms
-from sebody.runs.progress import showing
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
 from sebody.runs.tolerance import Tolerance

@@ -16,6 +16,7 @@ import numpy as np
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target
+from sebody.basics.progress import showing
 from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import Output
 from sebody.explore.ensembles.work import processors
@@ -26,7 +27,6 @@ from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table
 from sebody.explore.sweep.variations import Distribution
 from sebody.parameters.table import GRAVITY
-from sebody.runs.progress import showing
 
 BATCH = 100             # runs of a task
 SAVED = 5.0             # seconds between two savings of the table

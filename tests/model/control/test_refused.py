@@ -41,6 +41,20 @@ def test_faults_of_a_run(tmp_path):
         Simulation(model, 0.01)
 
 
+@pytest.mark.parametrize(("rate", "output", "said"), [
+    (np.nan, 1.0, r"gave rates = \[0.5, nan\] at t = 0"),
+    (0.0, np.nan, r"gave u = \[nan\] at t = 0"),
+    (np.inf, np.nan, r"gave rates = \[0.5, inf\] and u = \[nan\] at t = 0")])
+def test_results_of_a_continuous_law_are_named(rate, output, said):
+    """Its rates come before what is in u, and are not counted as u."""
+    def law(t, y, x, rates, u, parameters):
+        rates[0], rates[1], u[0] = 0.5, rate, output
+    model = rotor()
+    model.controller("law", law, ["hub.rotation"], ["motor"], states=(0.0, 0.0))
+    with pytest.raises(InputError, match=f"controller 'law' {said}"):
+        Simulation(model, 0.01)
+
+
 def test_a_misspelt_output_is_named():
     """A name that no actuator has is a signal: one like that of an idle actuator is warned of."""
     def said(sets, **reader):
