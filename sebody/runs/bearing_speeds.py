@@ -32,7 +32,8 @@ def read_tables(model: Model, spin: Spin) -> None:
     for bearing in by_tables(model):
         assert bearing.table is not None
         speed = speed_in(bearing, spin)
-        bearing.constants = bearing.constants | table_constants(bearing.table, speed, bearing)
+        bearing.constants = {**bearing.constants,
+                             **table_constants(bearing.table, speed, bearing)}
         bearing.read_at = speed
 
 

@@ -79,7 +79,8 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     given = Spin.of(model, spin)
     own = None if hub is None else known(model, hub).name
     model = copied_for_reading(model)
-    whole = parts_of(model, given, model.nodes.get(own)) if given.rotates else given
+    axle = None if own is None else model.nodes[own]
+    whole = parts_of(model, given, axle) if given.rotates else given
     read_tables(model, whole)
     return _equilibrium(_at_rest(model, t), whole, steps, tolerance, unstable)
 

@@ -1,6 +1,7 @@
 """How beams were built, in a plane of symmetry: so they can be divided anew there."""
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
@@ -45,9 +46,13 @@ def _flat_section(beam: Beam, flat: Flattening) -> AnySection:
     _, y, z = section_axes(line, beam.options["up"])
     if z @ flat.plane.normal > 1.0 - _SAME:
         return beam.section
+
+    def turned(place: float) -> StiffnessSection:
+        own = cast(StiffnessSection, section_at(beam.section, place))   # coupled ones are left out
+        return _turned(own, abs(y @ flat.plane.normal))
     if callable(beam.section):
-        return lambda place: _turned(section_at(beam.section, place), abs(y @ flat.plane.normal))
-    return _turned(section_at(beam.section, 0.0), abs(y @ flat.plane.normal))
+        return turned
+    return turned(0.0)
 
 
 def _turned(section: StiffnessSection, part: float) -> StiffnessSection:
