@@ -91,7 +91,8 @@ def ramp(rate: float, duration: float = inf, start: float = 0.0,
         (rate, "rate"), (origin, "origin"), (start, "start")))
     if duration == inf:
         return TimeFunction((start,), ((origin, r),)).with_corners()
-    T = number(duration, "duration", above=0.0)
+    T = number(duration, "duration", above=0.0,
+               remedy="give a positive number: ramp(rate=..., duration=...)")
     return TimeFunction((start, start + T), ((origin, r), (origin + r * T,))).with_corners()
 
 

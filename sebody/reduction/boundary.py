@@ -15,7 +15,7 @@ from sebody.reduction.interfaces import MeanFace, MeanMotion, RigidFace
 from sebody.reduction.ties import Ties, collinear
 
 BoundaryItem = tuple[int | RigidFace | MeanFace, str]
-Items = Mapping[int | RigidFace | MeanFace, str] | Iterable[BoundaryItem]
+Items = Mapping[int | RigidFace | MeanFace, str] | Iterable[BoundaryItem | RigidFace | MeanFace]
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,8 @@ def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
     pairs = []
     for one in inputs.items(items.items() if isinstance(items, Mapping) else items, "boundary",
                             remedy):
-        pair = inputs.items(one, "a boundary node", remedy)
+        pair = ((one, "full") if isinstance(one, RigidFace | MeanFace) else
+                inputs.items(one, "a boundary node", remedy))
         if len(pair) != 2:
             raise inputs.refusal("a boundary node", one, remedy)
         node = pair[0]

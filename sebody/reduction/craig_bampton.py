@@ -46,7 +46,7 @@ def craig_bampton(
     boundary : mapping or pairs of node index and 'full', 'translation' or 'rotation'
         Boundary nodes, in the order wanted, and the DOF blocks kept there. A DOF block not kept is
         an internal DOF. In place of a node, a `RigidFace` ties FE nodes to a boundary node, and a
-        `MeanFace` is the mean motion of FE nodes.
+        `MeanFace` is the mean motion of FE nodes; a face by itself keeps both blocks.
     modes : int or Accuracy
         Number of fixed-interface modes, from the lowest frequency up, or what they are to achieve.
     select : sequence of int, optional

@@ -70,7 +70,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         Free FE model.
     boundary : mapping or pairs of interface and 'full', 'translation' or 'rotation'
         Interfaces in the order wanted and the DOF blocks kept there: indices of FE nodes,
-        `RigidFace` or `MeanFace`. A DOF block not kept is an internal DOF.
+        `RigidFace` or `MeanFace`, which keep both blocks where they stand by themselves. A DOF
+        block not kept is an internal DOF.
     modes : int or Accuracy
         Number of vibration modes, from the lowest frequency up: of the clamped body, for 'macneal'
         and 'rubin' elastic ones of the free body, beside which there are up to 6 (planar 3) more

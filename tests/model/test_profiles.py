@@ -144,6 +144,8 @@ def test_profiles_of_any_numbers_drive():
 @pytest.mark.parametrize("make, message", [
     (lambda: motion(lambda time: np.interp(time, [0, 1], [0, 1])), "cannot be differentiated"),
     (lambda: motion(lambda time: abs(time - 1.0)), "cannot be differentiated .*no derivative in"),
+    (lambda: ramp(0.0, 0.0),
+     r"duration is 0.0: give a positive number: ramp\(rate=..., duration=...\)"),
     (lambda: motion(ramp(1.0, 2.0)), r"rate jumps from 1 to 0 at t = 2, which no body can follow: "
      "use rest_to_rest, trapezoidal or a spline; only at t = 0 may a drive begin with a speed"),
     (lambda: motion(piecewise((0, 0.0), (1, 2.0))), "position jumps from 0 to 2 at t = 1"),

@@ -237,3 +237,13 @@ def test_means_that_cannot_be_are_refused(model, items, words):
 def test_bad_mean_faces_are_refused(options, words):
     with pytest.raises(InputError, match=words):
         MeanFace(**{"nodes": (0, 1, 2), **options})
+
+
+def test_faces_by_themselves_keep_both_blocks():
+    faces = RigidFace(BLOCK.coordinates[LEFT[0]], LEFT), MeanFace(RIGHT)
+    found = craig_bampton(BLOCK, list(faces), 2)
+    expected = craig_bampton(BLOCK, [(face, "full") for face in faces], 2)
+    for name in ("stiffness", "mass"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    with pytest.raises(InputError, match="a boundary node is 3: give pairs"):
+        craig_bampton(BLOCK, [faces[0], 3], 2)
