@@ -344,3 +344,54 @@ def test_a_table_as_csv_is_what_pandas_reads(tmp_path):
             assert read[name].fillna("").tolist() == made[name].tolist()
         else:
             assert np.array_equal(read[name], made[name].astype(read[name].dtype), equal_nan=True)
+
+
+LOST = '''
+import subprocess, sys
+sys.path.insert(0, sys.argv[1])
+from pendulum import build
+from sebody import SebodyError
+from sebody.analysis import final
+from sebody.explore import sweep as package
+from sebody.explore.sweep import executors
+
+def begin(what, *options):
+    return subprocess.Popen([sys.executable, "-m", f"distributed.cli.dask_{what}", *options],
+                            stderr=subprocess.PIPE, text=True)
+
+def asked(count, **options):
+    try:
+        package.sweep(build, {"tip": final("tip.position")}, {
+            "length": [1.0 + 0.001 * k for k in range(count)], "t_end": [0.5]}, cluster=address,
+            **options)
+    except SebodyError as error:
+        print(error, flush=True)
+
+scheduler = begin("scheduler", "--port", "0", "--no-dashboard")
+while "Scheduler at:" not in (line := scheduler.stderr.readline()):
+    assert line
+address = line.split()[-1]
+executors.PATIENCE = 3
+asked(1)
+executors.PATIENCE = 60
+worker = begin("worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny")
+asked(2000, output=sys.argv[1] + "/table.npz",
+      progress=lambda part: scheduler.kill() if part > 0.2 else None)
+worker.kill()
+'''
+
+
+def test_clusters_without_workers_and_lost_schedulers_are_said(tmp_path):
+    """In a line each; the runs that were done are in the table, from which the sweep goes on."""
+    pytest.importorskip("distributed")
+    (tmp_path / "pendulum.py").write_text(PENDULUM)
+    (tmp_path / "lost.py").write_text(LOST)
+    run = subprocess.run([sys.executable, str(tmp_path / "lost.py"), str(tmp_path)],
+                         capture_output=True, text=True, timeout=300, cwd=tmp_path,
+                         env={**os.environ, "PYTHONPATH": str(tmp_path)})
+    assert run.returncode == 0, run.stderr[-2000:]
+    idle, lost = run.stdout.splitlines()
+    assert "has no workers after 3 s: start some with 'dask worker ADDRESS'" in idle
+    assert "the scheduler of the cluster was lost: runs that were done are kept in the" in lost
+    assert "Traceback" not in run.stderr
+    assert 0.1 < Table.load(tmp_path / "table.npz").done.mean() < 1.0

@@ -2,19 +2,23 @@
 
 import re
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from functools import cache
+from hashlib import sha256
 from logging import CRITICAL, getLogger
+from pathlib import Path
 from typing import Any
 
 from sebody.basics import inputs
-from sebody.basics.errors import InputError
+from sebody.basics.errors import InputError, SebodyError
 from sebody.explore.sweep.batches import Answer, Batch, run_task
 
 AHEAD = 4               # tasks that wait for each worker: more would only fill the scheduler
 RETRIES = 5             # of a task whose worker is lost
 MOST_WORKERS = 1024     # processes of one machine
-PATIENCE = 10           # seconds to find a scheduler
+PATIENCE = 10           # seconds to find a scheduler, and its workers
+LOGS = "distributed", "distributed.client"
 
 Task = list[Batch]
 Run = Callable[[Iterator[Task]], Iterator[Answer]]
@@ -72,32 +76,35 @@ def cluster(address: str | None, workers: int | None) -> Iterator[Run]:
     except ImportError as error:
         raise InputError('--cluster and --workers need Dask: pip install "sebody[cluster]"'
                          ) from error
-    own = None
+    own, levels = None, {log: log.level for log in map(getLogger, LOGS)}
+    for log in levels:
+        log.setLevel(CRITICAL + 1)  # Dask's own account of a scheduler that is not there is long
     try:
         if address is None:
             own = LocalCluster(n_workers=workers, threads_per_worker=1, processes=True,
                                dashboard_address=None)
-        log = getLogger("distributed")
-        level = log.level
-        log.setLevel(CRITICAL + 1)      # its own account of a scheduler that is not there is long
         try:
             client = Client(own or address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
             raise InputError(f"there is no scheduler at {address} ({error}): start one with "
                              "'dask scheduler', and workers with 'dask worker ADDRESS'") from error
-        finally:
-            log.setLevel(level)
         with client:
             _check_versions(client, address)
             yield lambda tasks: _on_workers(client, tasks)
     finally:
         if own is not None:
             own.close()
+        for log, level in levels.items():
+            log.setLevel(level)
 
 
 def _check_versions(client: Any, address: str | None) -> None:
     if not client.scheduler_info(n_workers=-1)["workers"]:
-        client.wait_for_workers(1, timeout=PATIENCE)
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise InputError(f"the scheduler at {address} has no workers after {PATIENCE} s: start "
+                             "some with 'dask worker ADDRESS'") from error
     own = _version()
     for worker, version in client.run(_version).items():
         if version != own:
@@ -105,11 +112,15 @@ def _check_versions(client: Any, address: str | None) -> None:
                              "install one version everywhere")
 
 
+@cache
 def _version() -> str:
-    """Version of the package, also that of a worker."""
+    """Version of the package and a hash of its files, also of a worker."""
     from sebody.basics.version import __version__
 
-    return __version__
+    package, content = Path(__file__).parents[2], sha256()
+    for path in sorted(package.rglob("*.py")):
+        content.update(str(path.relative_to(package)).encode() + path.read_bytes())
+    return f"{__version__} (files {content.hexdigest()[:8]})"
 
 
 def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
@@ -122,11 +133,15 @@ def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
     most = AHEAD * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
     coming = as_completed([], loop=client.loop)
     out = 0
-    for task in tasks:
-        coming.add(submit(task))
-        out += 1
-        if out >= most:
+    try:
+        for task in tasks:
+            coming.add(submit(task))
+            out += 1
+            if out >= most:
+                yield from next(coming).result()
+                out -= 1
+        for _ in range(out):
             yield from next(coming).result()
-            out -= 1
-    for _ in range(out):
-        yield from next(coming).result()
+    except (CancelledError, OSError, StopIteration) as error:
+        raise SebodyError("the scheduler of the cluster was lost: runs that were done are kept in "
+                          "the table; start it again and repeat the command to continue") from error
