@@ -10,11 +10,11 @@ import pytest
 from pages import all_pages
 
 from sebody import catalogue, simulate
-from sebody.basics import errors
+from sebody.basics import errors, progress
 from sebody.catalogue import scenes
 from sebody.cli import run, scene_arguments
 from sebody.cli.entry import main
-from sebody.runs import first_run, progress
+from sebody.runs import first_run
 from sebody.scenes import hinged_beam, planar_hinged_beam
 from sebody.verify import chart, check
 from sebody.verify.check.states import CheckRow
@@ -103,7 +103,7 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
 
 @pytest.mark.parametrize("arguments, message", [
     (["triple-beam"], "scene 'triple-beam' is unknown: did you mean 'spherical-beam' or "),
-    (["pendulum"], "scene 'pendulum' is unknown: there are ball-on-beam, box, chain, "),
+    (["pendulum"], "scene 'pendulum' is unknown: there are ball-on-beam, blade, box, chain, "),
     (["Four_Bar"], "scene 'Four_Bar' is unknown: did you mean 'four-bar'?"),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
      "are frame=converged_mean, inertia=None, modes=4, elements=20"),
