@@ -96,5 +96,6 @@ def test_arrays_that_are_apart():
     def caller_apart(count, x, y):
         scaled_apart(count, x, y)
     plain, told = ("".join(one.inspect_llvm().values()) for one in (caller, caller_apart))
-    assert "vector.body" in plain and "alias.scope" not in plain
-    assert "vector.body" in told and "alias.scope" in told
+    compared = "LVerDomain"     # of loops that LLVM doubles, to compare the ends; older ones alone
+    assert "vector.body" in plain and ("alias.scope" not in plain or compared in plain)
+    assert "vector.body" in told and "alias.scope" in told and compared not in told

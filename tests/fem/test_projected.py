@@ -26,8 +26,8 @@ def prestress(kinds, each, tied, rng):
     points = np.vstack(points)
     size = 3 * len(points) + 3
     motion = sparse.csr_array(
-        sparse.random_array((size - 3, size), density=0.02, rng=rng)
-        + sparse.eye_array(size - 3, size))
+        np.where(rng.random((size - 3, size)) < 0.02, rng.random((size - 3, size)), 0.0)
+        + np.eye(size - 3, size))
     ties = [(np.arange(size - 3, size), np.arange(9), rng.standard_normal((9, 3)))] if tied else []
     return SolidPrestress(points, cells, motion, ties), size
 
