@@ -116,7 +116,7 @@ def frequency_response(run: Simulation | Result | Model, load: str, quantities: 
         No such load or quantity, a state that cannot be evaluated, or a frequency at which the
         response is infinite.
     """
-    run = state_of(run, spin)
+    run = state_of(run, spin, hub)
     names = [quantities] if isinstance(quantities, str) else inputs.items(
         quantities, "quantities", "give names of quantities")
     omega = inputs.vector(omega, "omega")

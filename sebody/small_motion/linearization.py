@@ -105,7 +105,7 @@ def linearize(run: Simulation | Result | Model, spin: ArrayLike | None = None, f
         A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
         constant.
     """
-    run = state_of(run, spin)
+    run = state_of(run, spin, hub)
     return linearized(run, view(run, spin, frame, hub))
 
 
@@ -323,7 +323,7 @@ def modes(run: Simulation | Result | Model, spin: ArrayLike | None = None, frame
         A state that cannot be evaluated, a wrong spin, or axes in which the matrices are not
         constant.
     """
-    run = state_of(run, spin)
+    run = state_of(run, spin, hub)
     found = modes_in(run, view(run, spin, frame, hub))
     if spin is None:
         warn_of_spin(run, np.abs(found.values), "modes")

@@ -111,7 +111,7 @@ def random_response(run: Simulation | Result | Model, psd: Mapping[str, ArrayLik
         psd, "psd", "give tables (frequency, density) by the names of inputs").items()}
     if not tables:
         raise inputs.refusal("psd", psd, "name at least one input")
-    run = state_of(run, spin)
+    run = state_of(run, spin, hub)
     _refuse_crooked(run, quantities)
     system = state_space(run, list(tables), quantities, spin, frame, hub)
     pairs = _coherences(coherence, list(tables))

@@ -190,7 +190,7 @@ def state_space(run: Simulation | Result | Model, inputs: str | Iterable[str],
     InputError
         No such input or output, a state that cannot be evaluated, or a motion without mass.
     """
-    run = state_of(run, spin)
+    run = state_of(run, spin, hub)
     names = _listed(inputs, "inputs", "name of an input")
     wanted = _listed(outputs, "outputs", "name of a quantity")
     refuse_unmoved(wanted, "linear model")

@@ -71,6 +71,29 @@ def test_a_spin_is_that_of_the_equilibrium():
                           modes(equilibrium(model, spin=spin), spin=spin).values)
 
 
+def test_a_hub_away_from_the_origin_is_on_the_axis_of_the_equilibrium():
+    """The same model, shifted: its modes are those about the axis through its hub."""
+    def turning(shift):
+        model = Model()
+        hub = model.node("hub", shift)
+        model.rigid_body("boss", hub, 5.0, (0.1, 0.1, 0.2))
+        model.revolute(hub, (0.0, 0.0, 1.0))
+        for k in range(3):
+            way = np.array([np.cos(2.1 * k), np.sin(2.1 * k), 0.2])
+            end = model.node(f"end{k}", shift + way)
+            model.beam(f"arm{k}", (hub, end), ROUND, 4, 1, 2)
+        return model
+    spin, away = (0.0, 0.0, 30.0), np.array([2.0, -1.5, 0.4])
+    here, there = turning(np.zeros(3)), turning(away)
+
+    def vibrating(found):
+        return found.omega[found.omega > 1.0]       # not the free turn, of one value or two
+    expected = vibrating(modes(here, spin, "turning"))
+    assert vibrating(modes(there, spin, "turning", hub="hub")) == pytest.approx(expected, rel=1e-6)
+    rest = modes(equilibrium(there, spin=spin, hub="hub"), spin, "turning", hub="hub")
+    assert np.array_equal(modes(there, spin, "turning", hub="hub").values, rest.values)
+
+
 def test_a_model_without_equilibrium_is_refused():
     model = Model()
     ball = model.node("ball", (0.1, 0.2, 0.3))
