@@ -126,6 +126,7 @@ def _version() -> str:
 def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
     """Answers in the order in which they come; so many tasks are out at a time."""
     from distributed import as_completed
+    from distributed.comm import CommClosedError
 
     def submit(task: Task) -> Any:
         return client.submit(run_task, task, pure=False, retries=RETRIES)
@@ -142,6 +143,6 @@ def _on_workers(client: Any, tasks: Iterator[Task]) -> Iterator[Answer]:
                 out -= 1
         for _ in range(out):
             yield from next(coming).result()
-    except (CancelledError, OSError, StopIteration) as error:
+    except (CancelledError, CommClosedError, StopIteration) as error:
         raise SebodyError("the scheduler of the cluster was lost: runs that were done are kept in "
                           "the table; start it again and repeat the command to continue") from error
