@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody import Model
+from sebody.verify.outside.bricard import POINTS
 
 GRAVITY = 9.81
 
@@ -149,8 +150,7 @@ def parallelogram(place: Place) -> Model:
     return rockers(place, 3)
 
 
-CUBE = np.array([(0, 0, 0), (1, 0, 0), (1, -1, 0), (1, -1, 1), (0, -1, 1), (0, 0, 1), (0, 0, 0)],
-                dtype=float)
+CUBE = np.vstack([POINTS, POINTS[:1]])
 
 
 def bricard(place: Place) -> Model:

@@ -28,12 +28,13 @@ from sebody.cli import (
     report,
     run,
     sweep,
+    verify,
     warm,
 )
 
 # in the order of the help
 COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, blade, export,
-            inspect, check, bench, chart, atlas, warm)
+            inspect, check, bench, chart, atlas, verify, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

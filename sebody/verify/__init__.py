@@ -1,1 +1,1 @@
-"""What confirms this package: kernels against differences, known limits, measurements."""
+"""What confirms this package: kernels, known limits, numbers of others, measurements."""

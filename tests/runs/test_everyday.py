@@ -5,7 +5,6 @@ Motions are compared with equations of their own, turned models in other units w
 
 from functools import cache
 
-import closed_linkage
 import numpy as np
 import pytest
 from everyday import GRAVITY, MODELS, Place, door, double_pendulum, hung, rockers, rod
@@ -21,6 +20,7 @@ from sebody import (
     simulate_within,
 )
 from sebody.analysis import equilibrium
+from sebody.verify.outside import bricard
 
 H, T_END = 0.01, 2.0
 THIRTY = np.deg2rad(30.0)
@@ -87,7 +87,7 @@ def two_rods(t):
 
 
 MOTIONS = {"door": leaf, "gate": leaf, "carriage": sliding, "four-bar": rocking(2),
-           "parallelogram": rocking(3), "bricard": closed_linkage.bricard, "box": swinging,
+           "parallelogram": rocking(3), "bricard": bricard.path, "box": swinging,
            "double pendulum": two_rods}
 
 
