@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from copies import ROOT
 
-from sebody import SimulationError
+from sebody.basics.errors import SebodyError
 from sebody.cli.entry import main
 from sebody.verify import outside
 from sebody.verify.outside.case import Case, Quantity, rows
@@ -65,7 +65,7 @@ def test_numbers_that_are_wrong_do_not_pass():
                           lambda: {"made": dict.fromkeys(("slider at 1 s", "slider at 2 s"), 1.0)})
             row, = rows("made", made)
         assert row.passed is passed
-    with pytest.raises(SimulationError, match="'slider at 1 s' has no difference at twice"):
+    with pytest.raises(SebodyError, match="'slider at 1 s' has no difference at twice"):
         rows("made", made)
 
 

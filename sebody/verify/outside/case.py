@@ -13,7 +13,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import NamedTuple
 
-from sebody.basics.errors import SimulationError
+from sebody.basics.errors import SebodyError
 
 AT_TWICE = Path(__file__).with_name("at_twice.json")
 TIMES = 10.0            # the difference at twice the division
@@ -120,7 +120,7 @@ def rows(name: str, case: Case, whole: bool = True, division: int = 1) -> list[R
 
     Raises
     ------
-    SimulationError
+    SebodyError
         A quantity without a difference at twice the division.
     """
     began = perf_counter()
@@ -130,7 +130,7 @@ def rows(name: str, case: Case, whole: bool = True, division: int = 1) -> list[R
     groups: dict[str, float] = {}
     for one in case.quantities:
         if division == 1 and one.name not in twice:
-            raise SimulationError(f"case {name}: {one.name!r} has no difference at twice the "
+            raise SebodyError(f"case {name}: {one.name!r} has no difference at twice the "
                                   f"division in {AT_TWICE.name}")
         key = one.group or one.name
         groups[key] = max(groups.get(key, 0.0), twice.get(one.name, 0.0))
