@@ -38,7 +38,7 @@ from sebody.engine.evaluate import run_kernels
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.products import turn
 from sebody.kernels.loader import element_kernel
-from sebody.model.parts import Superelement
+from sebody.model.parts import Element, Superelement
 from sebody.quantities.symbols import NoTape
 from sebody.runs.simulation import Simulation
 
@@ -78,25 +78,20 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
     Raises
     ------
     NoTape
-        Powers; strain energy of elements that keep numbers.
+        Strain energy of elements that keep numbers.
     """
-    if any(place > POTENTIAL for place in places):
-        raise NoTape("powers")
     system, total = run.system, run.numbering.total
     wanted = np.zeros(POTENTIAL + 1, dtype=np.int64)
     wanted[places] = 1
     wanted[KINETIC] |= wanted[MOMENT:MOMENT + AXES].any()       # which gives ``M v``
-    massive, elastic = np.zeros((2, system.address.size), dtype=np.int64)
+    massive, strained = np.zeros((2, system.address.size), dtype=np.int64)
     for owner, first in run.numbering.forces_at.items():
         b = int(np.searchsorted(system.at_g, first, side="right")) - 1
         if isinstance(owner, Superelement):
-            massive[b] = elastic[b] = 1
+            massive[b] = strained[b] = 1
             continue
-        kernel = element_kernel(owner.kind)
-        massive[b] = kernel.INERTIAL
-        bare = owner.time_function is None and owner.function is None and owner.law is None
-        elastic[b] = bare and not owner.multipliers and not kernel.INERTIAL
-        if elastic[b] and kernel.MEMORY not in ((), ("angle",)) and wanted[STRAIN]:
+        massive[b], strained[b] = element_kernel(owner.kind).INERTIAL, elastic(owner)
+        if strained[b] and keeps_laws(owner) and wanted[STRAIN]:
             raise NoTape("strain energies of contacts")
     moves, points = np.zeros((1 + 2 * AXES, total)), []
     for block, first in run.numbering.dof_blocks.items():
@@ -107,9 +102,20 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
             points.append(first)
             for i in range(block.start.size):
                 moves[1 + i, first + i] = 1.0
-    return EnergyRows(wanted, massive, elastic, moves, np.array(points, dtype=np.int64),
+    return EnergyRows(wanted, massive, strained, moves, np.array(points, dtype=np.int64),
                       np.zeros((2, POTENTIAL + 1, total)), np.zeros((3, max(total, AXES))),
                       np.zeros(total))
+
+
+def elastic(element: Element) -> bool:
+    """Whether the force of an element at rest is that of its strain energy."""
+    bare = element.time_function is None and element.function is None and element.law is None
+    return bare and not element.multipliers and not element_kernel(element.kind).INERTIAL
+
+
+def keeps_laws(element: Element) -> bool:
+    """Whether the force of an element depends on numbers that it keeps, beside turns."""
+    return element_kernel(element.kind).MEMORY not in ((), ("angle",))
 
 
 @compiled

@@ -1,9 +1,9 @@
 """Exact derivatives of quantities by the states of a run: their tapes, followed backwards.
 
 Bars of a quantity are given to the numbers that its tape reads. Those of forces of elements go to
-the motion by the elements' products with weights, see `products`; those of energies by
-`energy_rows`; those of rotation matrices to rotations by ``dR = R skew(theta)``; those of dependent
-positions to what they follow from.
+the motion by the elements' products with weights, see `products`; those of energies and powers by
+`energy_rows` and `power_rows`; those of rotation matrices to rotations by ``dR = R skew(theta)``;
+those of dependent positions to what they follow from.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import OK, PREPARE, TRANSPOSED
+from sebody.contract.layout import OK, POWERS, PREPARE, TRANSPOSED
 from sebody.contract.read_numbers import (
     ENERGY,
     FORCE,
@@ -37,8 +37,12 @@ from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
 from sebody.gradients.link_products import place_weights, pull_back_bars
 from sebody.gradients.motion_rows import add_motion_rows, motion_rows, set_motion_rows
+from sebody.gradients.power_rows import power_rows, set_power_rows
 from sebody.gradients.products import Products, prepare, turn
 from sebody.kernels.tapes import play_back
+from sebody.model.parts import Superelement
+from sebody.quantities.algebra import dot, times
+from sebody.quantities.expressions import Number
 from sebody.quantities.reading import evaluate_loaded
 from sebody.quantities.symbols import NoTape
 from sebody.results.naming import look_up
@@ -57,6 +61,21 @@ class Rows(NamedTuple):
     motion: NDArray
     rates: NDArray
     seconds: NDArray
+
+
+class Smooth(States):
+    """Symbols that are all differentiated.
+
+    The damping of a body has a kernel of its power alone; it follows from the rates in its frame.
+    """
+
+    def power(self, port: int) -> Number:
+        body = next((one for one, own in self.numbering.ports.items() if own == port), None)
+        if not isinstance(body, Superelement):
+            return super().power(port)
+        rates = self.motion(body.name)["y_rate"]
+        assert body.reduced.damping is not None
+        return -dot(rates, times(body.reduced.damping.tolist(), rates))
 
 
 class Followed:
@@ -79,7 +98,7 @@ class Followed:
     def __init__(self, run: Simulation, quantity: str, linear: Linear, history: History):
         self.run, self.quantity = run, quantity
         self.linear, self.history = linear, history
-        states = States(run.model, run.numbering, run.system, run.state, history.rows[0])
+        states = Smooth(run.model, run.numbering, run.system, run.state, history.rows[0])
         states.put(quantity)
         kinds = states.kinds
         if not kinds <= DIFFERENTIATED:
@@ -90,8 +109,10 @@ class Followed:
             self.products = Products.of(run)
             if self.products is None:
                 raise NoTape("forces of elements without products")
-        energies = [place for kind, place in states.tape.inputs if kind == ENERGY]
+        read = [place for kind, place in states.tape.inputs if kind == ENERGY]
+        energies, powers = ([p for p in read if (p >= POWERS) == of] for of in (False, True))
         self.energies = energy_rows(run, energies) if energies else None
+        self.powers = power_rows(run, powers) if powers else None
         self.reading = states.reading()
         self.bars = np.zeros((len(self.reading.outputs), self.reading.numbers.size))
         self.motions = motion_rows(run, self.reading, states.moving, states.resting) if (
@@ -116,6 +137,8 @@ class Followed:
                   _follow_forces(*parts, self.places, bars, products, rows))
         if status == OK and products is not None and self.energies is not None:
             status = _follow_energies(*parts, bars, products, self.energies, rows)
+        if status == OK and products is not None and self.powers is not None:
+            status = _follow_powers(*parts, bars, products, self.powers, rows)
         if status == OK and self.motions is not None:
             status = _follow_motions(*parts, bars, self.motions, rows)
         if status != OK or not np.isfinite(rows).all():
@@ -221,19 +244,33 @@ def _follow_forces(system, state, reading, places, bars, products, out):
 def _follow_energies(system, state, reading, bars, products, energies, out):
     """Add what outputs depend on by energies, in the state in which they were followed."""
     status = set_energy_rows(system, state, products, energies)
-    w = np.zeros(out.shape[2])
-    found = np.zeros((3, out.shape[2]))
-    for c in range(out.shape[1]):
-        found[:] = 0.0
-        for i in range(reading.inputs.shape[0]):
-            if reading.inputs[i, 1] == ENERGY:
-                for r in range(2):
-                    found[r] += bars[c, reading.inputs[i, 0]] * energies.rows[
-                        r, reading.inputs[i, 2]]
-        if system.links.dependent.shape[0] > 0:
-            pull_back_bars(system, state, w, found)
-        out[:, c] += found
+    for i in range(reading.inputs.shape[0]):
+        place = reading.inputs[i, 2]
+        if reading.inputs[i, 1] == ENERGY and place < POWERS:
+            _add_rows(system, state, bars[:, reading.inputs[i, 0]], energies.rows[:, place], out)
     return status
+
+
+@compiled
+def _follow_powers(system, state, reading, bars, products, powers, out):
+    """The same of powers of elements."""
+    status = set_power_rows(system, state, products, powers)
+    for i in range(reading.inputs.shape[0]):
+        for p in range(powers.places.size):
+            if reading.inputs[i, 1] == ENERGY and reading.inputs[i, 2] == powers.places[p]:
+                _add_rows(system, state, bars[:, reading.inputs[i, 0]], powers.rows[:, p], out)
+    return status
+
+
+@compiled
+def _add_rows(system, state, bars, rows, out):
+    """Add the derivatives of a number by motion and rates, times its bars in all outputs."""
+    w, found = np.zeros(out.shape[2]), np.zeros((3, out.shape[2]))
+    found[:2] = rows
+    if system.links.dependent.shape[0] > 0:
+        pull_back_bars(system, state, w, found)
+    for c in range(out.shape[1]):
+        out[:, c] += bars[c] * found
 
 
 @compiled

@@ -19,12 +19,10 @@ from sebody.contract.read_numbers import MOTION
 from sebody.engine.arrays import Arrays
 from sebody.kernels.abi import at, pointer_to
 from sebody.quantities.reading import BODY, Reading, move_body
-from sebody.quantities.symbols import NoTape
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import STEPS, WEIGHTS
 
 SMALL = 1e-3        # of the characteristic length, or in radians
-MOST = 60           # coordinates of a body: tapes of larger ones are long
 AHEAD, BACK = np.array(STEPS), np.array(WEIGHTS)
 
 
@@ -56,15 +54,8 @@ def motion_rows(run: Simulation, reading: Reading, read: list[int], still: list[
         Numbers of motions that are read.
     still : list of slice
         Numbers that do not depend on rates.
-
-    Raises
-    ------
-    NoTape
-        Bodies with many coordinates.
     """
     widest = int(reading.bodies[:, 2].max())
-    if widest > MOST:
-        raise NoTape("motions inside large bodies")
     steps = np.full(run.numbering.total, SMALL * run.model.size())
     for block, first in run.numbering.dof_blocks.items():
         if block.rotational:

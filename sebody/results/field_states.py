@@ -73,6 +73,10 @@ class FieldStates:
         """Displacements of all FE nodes of unit amplitudes, in body axes, (N, nodes, D)."""
         return self._recovery.displacement(np.eye(self.amplitudes.shape[1]))
 
+    def shapes_at(self, node: int) -> NDArray:
+        """The same of one node, (N, D)."""
+        return self._recovery.displacement(np.eye(self.amplitudes.shape[1]), [node])[:, 0]
+
     def places(self, states: ArrayLike, nodes: ArrayLike | None = None,
                axes: str = "global") -> NDArray:
         """Places of some nodes in some states, given by their numbers."""

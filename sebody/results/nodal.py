@@ -1,14 +1,15 @@
 """Quantities of FE nodes inside superelements as symbols: motion, stresses, section forces.
 
-Motion follows from that of the body's frame and from the amplitudes of its shapes, stresses from
-amplitudes of shapes that strain it. Amplitudes are polynomials of second degree in the body's
-motion, and in forces of its loads times the frame's rotation: their coefficients are differences of
-what `sebody.results` computes of motions in which one number or two are one.
+Motion follows from that of the body's frame and, with coordinates that follow in second order,
+from ``r = X + Phi y + y S y / 2`` in it, stresses from amplitudes of shapes that strain the body.
+These amplitudes are polynomials of second degree in the body's motion, and in forces of its loads
+times the frame's rotation: their coefficients are differences of what `Stresses` computes of
+motions in which one number or two are one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations
 from typing import Any
 
@@ -29,6 +30,7 @@ MOTIONS = "position", "velocity", "acceleration"
 STRESSES = "stress", "section_forces", "section_strains"
 MISES = "von_mises"
 ROUNDED = 1e-13         # of a coefficient, relative to the values it is a difference of
+PIECE = 1024            # pairs of numbers that are one at a time
 # von Mises's stress squared, of the components xx, yy, zz, yz, zx, xy
 MISES_FORM = np.block([[1.5 * np.eye(3) - 0.5, np.zeros((3, 3))],
                        [np.zeros((3, 3)), 3.0 * np.eye(3)]])
@@ -57,25 +59,34 @@ class Inside:
         """Position, velocity or acceleration in global axes: in axes of the frame, then turned."""
         D, own = self.of.model.dimension, self.parts
         R = [own["rotation"][3 * i:3 * i + D] for i in range(D)]
-        r = self._local(place, "places")
+        r, rate, second = self._local(place)
         if quantity == "position":
             return plus(own["origin"], times(R, r))
-        rate, spin = self._local(place, "velocities"), own["spin"]
+        spin = own["spin"]
         if quantity == "velocity":
             return times(R, plus(own["velocity"], plus(rate, spun(spin, r))))
         twice = plus(scaled(2.0, rate), spun(spin, r))
-        local = plus(self._local(place, "accelerations"), spun(spin, twice))
+        local = plus(second, spun(spin, twice))
         return times(R, plus(own["acceleration"], plus(local, spun(own["spin_rate"], r))))
 
-    def _local(self, place: int, what: str) -> list[Number]:
-        """The place of a node in a frame that rests, or a rate of it."""
-        before = sum(len(self.parts[name]) for name in self.parts if not name.startswith("y"))
-        own = self.numbers[before:]
-
-        def displaced(moved: NDArray) -> NDArray:
-            field = self._field(np.hstack([np.zeros((len(moved), before)), moved]))
-            return getattr(field, what)(np.arange(len(moved)), [place], axes="body")[:, 0]
-        return [self._sum(terms, own).single() for terms in quadratic(displaced, len(own))]
+    def _local(self, place: int) -> list[list[Number]]:
+        """Place of a node in a frame that rests, its rate and second rate."""
+        y, rate, second = (self.parts[name] for name in ("y", "y_rate", "y_second"))
+        field, reduced = self._field(np.zeros((1, 0))), self.of.model.bodies[self.body].reduced
+        shapes = field.shapes_at(place)
+        forms = np.zeros((shapes.shape[1], len(y), len(y)))
+        if reduced.invariants is not None:
+            forms = np.einsum("bc,bij->cij", shapes[len(y):], reduced.invariants.Q)
+        forms[np.abs(forms) <= ROUNDED * np.abs(forms).max(initial=0.0)] = 0.0
+        found: list[list[Number]] = [[], [], []]
+        for point, Phi, S in zip(field.points[place], shapes[:len(y)].T, forms, strict=True):
+            for own, terms in zip(found, (
+                    [(point, ()), *_linear(Phi, y), *_form(0.5 * S, y, y)],
+                    [*_linear(Phi, rate), *_form(S, y, rate)],
+                    [*_linear(Phi, second), *_form(S, rate, rate), *_form(S, y, second)]),
+                    strict=True):
+                own.append(self._sum(terms).single())
+        return found
 
     def _field(self, numbers: NDArray, elements: NDArray | None = None) -> FieldStates:
         """The body in states with some numbers of its motion, all others zero."""
@@ -149,16 +160,17 @@ class Inside:
             elements[:, places] = numbers[:, size:]
             return self._field(numbers[:, :size], elements).stresses().amplitudes
         own = [*self.numbers, *map(of.force, places)]
-        rows = quadratic(amplitudes, len(own))
-        factors = [self._sum(terms, own).single() for terms in rows]
+        rates = range(size - 2 * len(self.parts["y"]), size)
+        factors = [self._sum((weight, [own[i] for i in product]) for weight, product in terms
+                             ).single() for terms in quadratic(amplitudes, len(own), rates)]
         made = self._field(np.zeros((1, 0))).stresses().of_unit_amplitudes()
         self._strains = made, factors
         return self._strains
 
-    def _sum(self, polynomial: Polynomial, numbers: list) -> Sum:
+    def _sum(self, terms: Iterable[Term]) -> Sum:
         products: dict[tuple[int, ...], float] = {}
-        for weight, factors in polynomial:
-            product = tuple(sorted(numbers[i].place() for i in factors))
+        for weight, factors in terms:
+            product = tuple(sorted(x.place() for x in factors))
             products[product] = products.get(product, 0.0) + weight
         return Sum(self.tape, products)
 
@@ -185,10 +197,21 @@ def inside(of: Symbols, name: str, quantity: str) -> Any:
     return made.mises(place) if quantity == MISES else made.stress(place, quantity)
 
 
+Term = tuple[float, Sequence[Sum]]
 Polynomial = list[tuple[float, tuple[int, ...]]]
 
 
-def quadratic(function: Callable[[NDArray], NDArray], size: int) -> list[Polynomial]:
+def _linear(weights: NDArray, numbers: Sequence[Sum]) -> list[Term]:
+    return [(float(weights[i]), (numbers[int(i)],)) for i in np.flatnonzero(weights)]
+
+
+def _form(matrix: NDArray, left: Sequence[Sum], right: Sequence[Sum]) -> list[Term]:
+    return [(float(matrix[i, j]), (left[int(i)], right[int(j)]))
+            for i, j in zip(*np.nonzero(matrix), strict=True)]
+
+
+def quadratic(function: Callable[[NDArray], NDArray], size: int, alone: Sequence[int] = ()
+              ) -> list[Polynomial]:
     """Coefficients of polynomials of second degree.
 
     Parameters
@@ -196,6 +219,8 @@ def quadratic(function: Callable[[NDArray], NDArray], size: int) -> list[Polynom
     function : callable
         Of (n, size) numbers; returns (n, m) values.
     size : int
+    alone : sequence of int, optional
+        Numbers that are in no product.
 
     Returns
     -------
@@ -203,10 +228,10 @@ def quadratic(function: Callable[[NDArray], NDArray], size: int) -> list[Polynom
         Of every value its coefficients, each with the numbers it belongs to.
     """
     unit = np.eye(size)
-    pairs = list(combinations(range(size), 2))
-    ends = [unit[i] + unit[j] for i, j in pairs]
-    values = function(np.vstack([np.zeros((1, size)), unit, -unit, *([ends] if ends else [])]))
-    zero, plus, minus, both = np.split(values, [1, 1 + size, 1 + 2 * size])
+    pairs = np.array(list(combinations([k for k in range(size) if k not in alone], 2)),
+                     dtype=np.int64).reshape(-1, 2)
+    values = function(np.vstack([np.zeros((1, size)), unit, -unit]))
+    zero, plus, minus = np.split(values, [1, 1 + size])
     linear, square = (plus - minus) / 2.0, (plus + minus) / 2.0 - zero
     of_size = ROUNDED * (np.abs(plus) + np.abs(minus) + np.abs(zero))
     linear[np.abs(linear) <= of_size] = 0.0
@@ -216,11 +241,12 @@ def quadratic(function: Callable[[NDArray], NDArray], size: int) -> list[Polynom
         polynomials[m].append((float(linear[i, m]), (int(i),)))
     for i, m in zip(*np.nonzero(square), strict=True):
         polynomials[m].append((float(square[i, m]), (int(i), int(i))))
-    if pairs:
-        i, j = np.array(pairs).T
+    for first in range(0, len(pairs), PIECE):
+        i, j = pairs[first:first + PIECE].T
+        both = function(unit[i] + unit[j])
         mixed = both - plus[i] - plus[j] + zero
         mixed[np.abs(mixed) <= ROUNDED * (np.abs(both) + np.abs(plus[i]) + np.abs(plus[j])
                                           + np.abs(zero))] = 0.0
         for p, m in zip(*np.nonzero(mixed), strict=True):
-            polynomials[m].append((float(mixed[p, m]), pairs[p]))
+            polynomials[m].append((float(mixed[p, m]), (int(i[p]), int(j[p]))))
     return polynomials
