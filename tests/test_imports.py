@@ -41,10 +41,12 @@ MAY_IMPORT = {
                   "results", "pictures", "parameters", "runs", "small_motion"},
     "explore": {*COMPILED, "engine", "fem", "io", "reduction", "model", "assembly", "quantities",
                 "results", "pictures", "parameters", "runs", "small_motion", "gradients"},
+    "names of reduction": {"reduction", "explore"},
     # names of other folders
     "analysis": {"runs", "small_motion", "explore", "gradients"},
     "sebody": {"model", "results", "runs"},         # its names: sebody/__init__.py
-    "scenes": {"sebody", "control", "fem", "reduction", "io", "results", "pictures", "analysis"},
+    "scenes": {"sebody", "control", "fem", "reduction", "names of reduction", "io", "results",
+               "pictures", "analysis"},
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "quantities",
                "results", "pictures", "runs", "small_motion", "explore", "gradients", "sebody",
@@ -57,7 +59,8 @@ MAY_IMPORT = {
 }
 # modules of a folder above their own: names that are loaded when they are asked for, and
 # the command line as a program
-APART = {"sebody.results": "names of results", "sebody.__main__": "cli"}
+APART = {"sebody.results": "names of results", "sebody.reduction": "names of reduction",
+         "sebody.__main__": "cli"}
 RUNTIME = {"numpy", "scipy", "numba"}
 PACKAGES = {"basics": {"numpy"}, "contract": {"numpy"}, "compiler": RUNTIME | {"llvmlite"},
             "kernels": RUNTIME | {"llvmlite"}, "engine": RUNTIME | {"llvmlite"},

@@ -36,7 +36,7 @@ from sebody.model.body_points import point_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import Element, Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 # rows of constants of every body that is still in use: the next run of its model needs them again
 _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary()

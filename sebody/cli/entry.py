@@ -25,6 +25,7 @@ from sebody.cli import (
     listing,
     new,
     plot,
+    reducing,
     report,
     run,
     sweep,
@@ -33,8 +34,8 @@ from sebody.cli import (
 )
 
 # in the order of the help
-COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, blade, export,
-            inspect, check, bench, chart, atlas, verify, warm)
+COMMANDS = (run, sweep, advise, listing, new, plot, animate, report, importing, reducing, blade,
+            export, inspect, check, bench, chart, atlas, verify, warm)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

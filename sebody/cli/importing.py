@@ -11,7 +11,7 @@ from sebody.basics.errors import InputError
 from sebody.cli.number_arguments import real, whole
 
 if TYPE_CHECKING:
-    from sebody.reduction import Accuracy
+    from sebody.reduction.accuracy import Accuracy
 
 
 def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
@@ -128,7 +128,7 @@ def _is_number(word: str) -> bool:
 
 
 def _modes(options: argparse.Namespace) -> "int | Accuracy":
-    from sebody.reduction import Accuracy
+    from sebody.reduction.accuracy import Accuracy
 
     if (options.accuracy is None) != (options.up_to is None):
         raise InputError("--accuracy and --up-to belong together: give --accuracy 1e-3 --up-to F")

@@ -14,7 +14,7 @@ from sebody.fem.section_along import AnySection
 from sebody.model.beams import part_bodies, part_shapes
 from sebody.model.model import Model
 from sebody.parameters.changes import BODIES, Handle, whole_body
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 
 @dataclass(frozen=True, eq=False)

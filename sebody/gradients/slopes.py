@@ -26,7 +26,7 @@ from sebody.gradients.parameters import Column
 from sebody.gradients.start_rates import fitted_rates
 from sebody.model.model import Model
 from sebody.parameters.changes import Handle
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.moved_states import STEPS, WEIGHTS
 

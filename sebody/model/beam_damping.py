@@ -22,7 +22,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.fem.section_along import section_at
 from sebody.model.beam_pieces import AxisPiece, Course, StraightPiece
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 ELEMENTS = 32           # of the whole beam whose frequencies are taken: right to 1e-4 and better
 NAMED = re.compile(r"(free|clamped|hinged) ([1-9])")

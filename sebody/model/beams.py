@@ -23,7 +23,8 @@ from sebody.model.bodies import superelement
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node
 from sebody.model.parts import Beam, Node
-from sebody.reduction import ReducedBody, craig_bampton
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.craig_bampton import craig_bampton
 from sebody.reduction.held import vibration_shapes, with_held_modes
 
 KEPT = 64       # bodies of beams that are kept for further models

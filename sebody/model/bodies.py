@@ -30,7 +30,7 @@ from sebody.model.inertias import (
 )
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.summary import place
 
 

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.model.mechanism import Mechanism
 from sebody.model.shafts import is_unbalance
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 # constants of elements that are lengths, and moments of inertia of rigid bodies
 LENGTHS, MOMENTS = ("length",), ("J_xx", "J_yy", "J_zz")

@@ -15,7 +15,7 @@ from sebody.model.joints import fix
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import node as make_node
 from sebody.model.parts import Node, Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 
 def foundation(model: Mechanism, name: str, body: ReducedBody, nodes: Iterable[Node | str] | Node |

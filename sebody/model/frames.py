@@ -9,8 +9,9 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.traits import FrameTraits
 from sebody.generated import options
-from sebody.reduction import ReducedBody, body_weights
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.mean_rotation import central_inertia
+from sebody.reduction.weights import body_weights
 
 
 class Frame(NamedTuple):

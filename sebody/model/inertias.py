@@ -4,7 +4,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.generated import options
 from sebody.model.frames import FRAMES
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 BY_LETTER = {traits.letter: name for name, traits in options.INERTIA_OPTIONS.items()}
 

@@ -14,7 +14,7 @@ from sebody.fem.section_along import AnySection
 from sebody.io.load_series import LoadSeries
 from sebody.model.bearing_tables import BearingTable
 from sebody.model.time_functions import TimeFunction
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.invariants import InertiaInvariants
 
 

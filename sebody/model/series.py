@@ -22,7 +22,7 @@ from sebody.model.histories import time_function
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, Element, Superelement
 from sebody.model.time_functions import TimeFunction
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 AXES = "xyz"
 

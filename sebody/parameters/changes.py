@@ -13,7 +13,7 @@ from sebody.basics.errors import InputError
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint, Node, Superelement
 from sebody.model.variants.copying import exchange
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.scaling import scaled
 
 MOTION, BODIES, LOADS = "motion", "bodies", "loads"     # what a change has an effect on

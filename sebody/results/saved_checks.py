@@ -19,7 +19,7 @@ from sebody.contract.layout import ENERGIES, RECORD
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, record_counts
 from sebody.model.parts import Element, Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names
 from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery

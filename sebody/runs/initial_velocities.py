@@ -10,7 +10,7 @@ from sebody.engine.state import State
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, coordinates
 from sebody.model.parts import DofBlock, Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 SMALL = 1e-6        # difference of velocities, of the largest one
 STRAINED = 1e-4     # share of the kinetic energy in deformation: speeds off by a hundredth

@@ -82,7 +82,7 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
     axle = None if own is None else model.nodes[own]
     whole = parts_of(model, given, axle) if given.rotates else given
     read_tables(model, whole)
-    return _equilibrium(_at_rest(model, t), whole, steps, tolerance, unstable)
+    return _equilibrium(at_rest(model, t), whole, steps, tolerance, unstable)
 
 
 def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
@@ -95,7 +95,7 @@ def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
     """
     steps = inputs.integer(steps, "steps", least=1)
     _refuse_states(model)
-    return _equilibrium(_at_rest(model, 0.0), spin, steps, TOLERANCE, "leave")
+    return _equilibrium(at_rest(model, 0.0), spin, steps, TOLERANCE, "leave")
 
 
 def _equilibrium(run: Simulation, spin: Spin, steps: int, tolerance: float, unstable: str
@@ -111,7 +111,7 @@ def _equilibrium(run: Simulation, spin: Spin, steps: int, tolerance: float, unst
     return _result(run, path)
 
 
-def _at_rest(model: Model, t: float) -> Simulation:
+def at_rest(model: Model, t: float) -> Simulation:
     """The model as built, with all of the loads of a time and without rates."""
     run = _still(Standstill(model, 1.0), t)
     if not any(load.tuned for load in model.loads):

@@ -66,6 +66,16 @@ def beam_body() -> reduction.ReducedBody:
 
 
 @cache
+def two_beams() -> Model:
+    """Two beams in a row, at rest."""
+    model = Model()
+    for name, x in (("a", 0.0), ("c", 2.0)):
+        model.node(name, (x, 0.0, 0.0))
+    model.beam("beam", ("a", "c"), SECTION, elements=2, modes=0)
+    return model
+
+
+@cache
 def ensemble() -> an.Ensemble:
     """Runs of the mechanism."""
     return an.Ensemble(mechanism(), 0.05)
@@ -252,6 +262,8 @@ REDUCTION = {
         "fe_model": beam(), "boundary": {0: "full", 4: "full"}, "modes": 1,
         "method": "craig-bampton", "select": None, "recover": None, "loads": None,
         "residual_modes": False}),
+    "reduce_model": Call(reduction.reduce_model, lambda: {
+        "run_or_model": two_beams(), "interfaces": ("a", "c"), "modes": 1, "preload": True}),
     "craig_bampton": Call(reduction.craig_bampton, lambda: {
         "fe_model": beam(), "boundary": [(0, "full"), (4, "full")], "modes": 1, "select": None,
         "recover": None, "loads": None}),

@@ -18,6 +18,14 @@ def build(n=1):
 """
 
 REFUSED = [
+    (("reduce",), "required: SCENE, --interfaces, --output"),
+    (("reduce", "hinged-beam", "--output", "b.npz", "--interfaces", "nowhere"), "node 'nowhere'"),
+    (("reduce", "hinged-beam", "--output", "b.npz", "--interfaces", "tip", "tip"), "tip twice"),
+    (("reduce", "hinged-beam", "--output", "b.txt", "--interfaces", "tip"), "b.txt"),
+    (("reduce", "hinged-beam", "--output", "b.npz", "--interfaces", "tip", "--accuracy", "1e-3"),
+     "--accuracy and --up-to belong together"),
+    (("reduce", "hinged-beam", "--output", "b.npz", "--interfaces", "tip", "--modes", "2",
+      "--accuracy", "1e-3", "--up-to", "10"), "leave out --modes"),
     ((), "COMMAND"), (("fly",), "command 'fly' is unknown: there are run, sweep"),
     (("--fast",), "COMMAND"),
     (("run",), "required: SCENE"), (("run", ""), "scene '' is unknown"),

@@ -12,7 +12,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, Superelement
 from sebody.model.variants import divide
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 DIVISIONS = (1, 2, 4, 8)
 MOST_MODES = {True: 4, False: 8}        # of a whole beam, at least: planar or not

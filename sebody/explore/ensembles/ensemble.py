@@ -23,7 +23,7 @@ from sebody.model.summary import summary
 from sebody.model.variants.copying import copied
 from sebody.parameters.changes import Handle
 from sebody.parameters.table import PLACES, given, handles, refused
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.results.result import Result
 from sebody.runs.fingerprint import whole
 from sebody.runs.outputs import Form, Output, forms, outputs_of

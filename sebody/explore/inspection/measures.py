@@ -12,7 +12,6 @@ from scipy.linalg import LinAlgError, eigh
 
 from sebody.basics.errors import InputError
 from sebody.io.body_file import BodyFile
-from sebody.reduction import frame_weights
 from sebody.reduction.checks import (
     asymmetry,
     check_layout,
@@ -22,6 +21,7 @@ from sebody.reduction.checks import (
 )
 from sebody.reduction.massless import condensed, inert
 from sebody.reduction.rigid_motions import rigid_motions
+from sebody.reduction.weights import frame_weights
 from sebody.runs.limits.thresholds import PERIOD
 
 SHOWN = 12          # frequencies

@@ -17,7 +17,7 @@ from sebody.gradients.sweeps import forward
 from sebody.kernels.loader import load
 from sebody.model.model import Model
 from sebody.model.parts import Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.results import rotations
 from sebody.results.motion import body_motion
 from sebody.results.recording import Recording

@@ -35,7 +35,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.fem import beam_element
 from sebody.fem.section import Section, StiffnessSection
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 IN_PLANE = np.array([0, 1, 5, 6, 7, 11])    # DOFs of an element in the xy plane
 PLACES = 49             # heights between the bounds that elements are made for

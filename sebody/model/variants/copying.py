@@ -18,7 +18,7 @@ from sebody.model.parts import Element, Node, Superelement
 from sebody.model.series import coordinate_vectors
 from sebody.model.summary import unknowns
 from sebody.model.variants.moved_points import on_body
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 
 class Variant(NamedTuple):

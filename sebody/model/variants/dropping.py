@@ -20,7 +20,7 @@ from sebody.model.variants.copying import (
     loads_on,
     placed,
 )
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.condensation import Released, coordinates_of, released
 
 _KINDS = ("position", "rotation")

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.model.mechanism import Mechanism
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.plane import PlanarBody, planar_body
 
 _SAME = 1e-13       # of axes that differ by rounding

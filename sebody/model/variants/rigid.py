@@ -13,7 +13,7 @@ from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
 from sebody.model.variants.dependent import is_held, make_dependent, start_rate
 from sebody.model.variants.moved_points import on_rigid_body
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.reduction.summary import place
 
 _SAME = 1e-9    # relative difference of velocities and places that is rounding

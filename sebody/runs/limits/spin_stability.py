@@ -34,7 +34,7 @@ from sebody.basics.vectors import skew
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.frames import FRAMES
 from sebody.model.parts import Superelement
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 ALIGNED = 1e-2      # rad: how far a principal axis may be off
 

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from sebody.basics.errors import LimitWarning, SimulationError
 from sebody.fem import Section, frame
 from sebody.model.model import Model
-from sebody.reduction import ReducedBody, craig_bampton
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.craig_bampton import craig_bampton
 from sebody.results.result import Result
 from sebody.runs.simulation import simulate
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row

@@ -8,7 +8,8 @@ from sebody.engine.evaluate import assemble
 from sebody.fem import straight_beam
 from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
-from sebody.reduction import ReducedBody, craig_bampton
+from sebody.reduction.body import ReducedBody
+from sebody.reduction.craig_bampton import craig_bampton
 from sebody.runs.simulation import Simulation, simulate
 from sebody.scenes.hinged_beam import SECTION
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row

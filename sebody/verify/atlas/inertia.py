@@ -7,7 +7,7 @@ from sebody.engine.evaluate import assemble
 from sebody.fem import straight_beam
 from sebody.kernels.rotations import exp_map
 from sebody.model.model import Model
-from sebody.reduction import craig_bampton
+from sebody.reduction.craig_bampton import craig_bampton
 from sebody.runs.simulation import Simulation, simulate
 from sebody.scenes import spherical_beam_strong
 from sebody.scenes.hinged_beam import SECTION

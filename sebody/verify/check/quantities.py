@@ -17,7 +17,7 @@ from sebody.quantities.names import names
 from sebody.quantities.reading import Reading, evaluate
 from sebody.quantities.symbols import NoTape
 from sebody.quantities.table import OF_MODEL, OWNERS
-from sebody.reduction import craig_bampton
+from sebody.reduction.craig_bampton import craig_bampton
 from sebody.results.result import Result
 from sebody.results.tapes import States
 from sebody.runs.simulation import Simulation

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 
 def flat(body: ReducedBody, shifts: NDArray, turns: NDArray) -> NDArray:

@@ -11,7 +11,7 @@ from sebody.explore.advice.indicators.coordinates import flat, nodal
 from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import detuned
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 COUPLED = 0.2       # of squared frequencies, by which the first of a cantilever is off
 RESOLVED = 1.5      # largest angle of an oscillator in a recorded step: above, it answers at once

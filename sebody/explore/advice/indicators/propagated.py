@@ -10,7 +10,7 @@ from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.coordinates import nodal
 from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.model.parts import Node
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 FORCES = ("force", "moment", "reaction", "torque", "thrust", "multipliers", "forces")
 TURNING = ("moment", "torque")

@@ -10,7 +10,7 @@ from sebody.explore.advice.forms import Part
 from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.model.variants import divide
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 from sebody.results.result import Result
 
 MORE = 2            # times the most modes that forms have, which are looked at

@@ -11,7 +11,7 @@ from sebody.explore.advice.indicators.recorded import Recorded
 from sebody.explore.advice.indicators.vibration import detuned, strain_force
 from sebody.generated.options import INERTIA_OPTIONS
 from sebody.model.parts import Node
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 RIGID = 1e-9        # of squared frequencies, below which a motion of the boundary is rigid
 

@@ -10,7 +10,7 @@ from sebody.explore.advice.forms import Part
 from sebody.explore.advice.indicators.coordinates import flat
 from sebody.explore.advice.indicators.propagated import Force, propagated
 from sebody.explore.advice.indicators.recorded import Recorded
-from sebody.reduction import ReducedBody
+from sebody.reduction.body import ReducedBody
 
 MOST = 2.0      # amplitudes: in antiphase
 

@@ -1,0 +1,52 @@
+"""Bodies inside an assembly, in its state: where they are, and how they move with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from sebody.model.parts import Superelement
+from sebody.reduction.body import ReducedBody
+from sebody.results.motion import body_motion
+from sebody.results.result import Result
+
+Motion = Callable[[str], NDArray]       # rows of a quantity of small motion by its name
+
+
+class Placed(NamedTuple):
+    """A body in the state of an assembly."""
+
+    name: str
+    body: ReducedBody       # as it lies in the state
+    shift: NDArray          # from its coordinates to places, (D,)
+    rows: NDArray           # (n_b, n) motion of its coordinates, in axes of space
+    y: NDArray              # (n_b,) its deformation in the state, in these axes
+
+    def place(self, points: NDArray) -> NDArray:
+        """Places of points of the undeformed body."""
+        return points + self.shift
+
+
+def placed_bodies(held: Result, motion: Motion) -> list[Placed]:
+    """All superelements of a result's model, in its last state."""
+    return [_placed(held, body, motion) for body in held.model.bodies.values()]
+
+
+def _placed(held: Result, body: Superelement, motion: Motion) -> Placed:
+    state = body_motion(held, body, slice(-1, None))
+    R, own = state.rotation[0], body.reduced
+    still = np.abs(R - np.eye(len(R))).max() < 1e-14
+    angles = len(own.rotation_nodes)
+    by = block_diag(np.kron(np.eye(len(own.position_nodes)), R),
+                    np.eye(angles) if own.planar else np.kron(np.eye(angles), R),
+                    np.eye(own.modes))
+    turned = own if still else own.rotated(R)
+    origin = body.alpha @ turned.coordinates[list(own.position_nodes)]
+    rows = [motion(f"{body.nodes[i].name}.position") for i in own.position_nodes]
+    rows += [motion(f"{body.nodes[i].name}.rotation") for i in own.rotation_nodes]
+    rows += [motion(f"{body.name}.modes")] if own.modes else []
+    return Placed(body.name, turned, state.origin[0] - origin, np.vstack(rows), by @ state.y[0])
