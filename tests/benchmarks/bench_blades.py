@@ -11,29 +11,26 @@ frequencies of the NREL 5 MW blade from its table of ElastoDyn.
 
 import argparse
 import json
-import sys
 import time
 import warnings
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from sebody import Model, generalized_alpha, simulate
+from sebody import Model, simulate
 from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, beam_along
 from sebody.scenes import blade
+from sebody.verify.outside.composite_beam import composite
+from sebody.verify.outside.composite_beam_dynamics import BEAMDYN, rms, stepped
+from sebody.verify.outside.curved_beam import curved
+from sebody.verify.outside.curved_superelements import curved_of_chrono
+from sebody.verify.outside.general_beams import error, moved
+from sebody.verify.outside.twisted_beam import twisted
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
-from general_beam_cases import CASES, composite, curved_of_chrono, error, moved  # noqa: E402
-
+CASES = {"composite": composite, "twisted": twisted, "curved": curved}
 TABLE = Path(__file__).parent.parent / "data" / "nrel5mw_blade.txt"
 NREL = (0.6777, 1.0865, 1.9543, 4.009)
-# u3 of BeamDyn, 5 nodes, h 0.005, every 0.05 s; integration at this step is itself off by 4 %
-BEAMDYN = np.array([
-    0.76836577, 2.0534850, 2.2052969, 1.1064713, 0.15758876, 0.55309539, 1.8159070, 2.2654943,
-    1.3113535, 0.27880849, 0.44070038, 1.5982498, 2.2970329, 1.5343329, 0.34515991, 0.27817189,
-    1.3946589, 2.2886914, 1.8093410, 0.54135602])
 
 
 def statics() -> dict:
@@ -88,23 +85,9 @@ def nrel_blade() -> dict:
     return {"Hz": hertz.tolist(), "off": (hertz / NREL - 1).tolist()}
 
 
-def stepped(elements: int, bodies: int | None, modes: int, h: float, rho: float) -> NDArray:
-    """u3 of the composite beam under a force from rest, every 0.05 s."""
-    axis, section, force = composite()[:3]
-    model = Model()
-    ends = model.node("root", axis.position(0.0)), model.node("tip", axis.position(1.0))
-    model.beam("beam", ends, section, elements, bodies, modes, axis=axis)
-    model.fix(ends[0])
-    model.force(ends[1], force)
-    result = simulate(model, h, 1.0, scheme=generalized_alpha(rho))
-    return np.interp(0.05 * np.arange(1, 21), result.t, result["tip.position"][:, 2])
-
-
 def dynamics() -> dict:
     """Rms differences from BeamDyn's coarse series, and of superelements from fine beams."""
-    def rms(a: NDArray, b: NDArray) -> float:
-        return float(np.sqrt(np.mean((a - b)**2)) / BEAMDYN.max())
-    coarse = stepped(16, None, 0, 0.005, 0.0)
+    coarse = stepped(16)
     fine = stepped(32, None, 0, 5e-4, 0.9)
     return {"16 bodies of one element, h 0.005, rho 0, to BeamDyn": rms(coarse, BEAMDYN),
             "4 bodies, 2 modes, h 0.0005, to 32 of one element": rms(

@@ -2,16 +2,6 @@
 
 import numpy as np
 import pytest
-from general_beam_cases import (
-    LINE,
-    cantilever,
-    composite,
-    curved,
-    curved_of_chrono,
-    error,
-    moved,
-    twisted,
-)
 from numpy.testing import assert_allclose
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
@@ -21,6 +11,11 @@ from sebody.analysis import equilibrium, final, gradient, modes, sections
 from sebody.fem import Axis, GeneralSection, Stations, StiffnessSection, beam_along, circle
 from sebody.model.beams import part_bodies
 from sebody.model.variants import copied, divide, planar
+from sebody.verify.outside.composite_beam import composite
+from sebody.verify.outside.curved_beam import curved
+from sebody.verify.outside.curved_superelements import curved_of_chrono
+from sebody.verify.outside.general_beams import LINE, cantilever, error, moved
+from sebody.verify.outside.twisted_beam import twisted
 
 
 @pytest.mark.parametrize(("case", "wanted"), [

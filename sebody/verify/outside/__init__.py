@@ -18,6 +18,14 @@ CASES = (
     # mechanisms of rigid bodies
     "simple-pendulum", "n-four-bar", "squeezer", "bricard", "flyball-governor",
     "spatial-slider-crank",
+    # beams at rest
+    "composite-beam", "twisted-beam", "curved-beam", "curved-superelements", "two-beam-cantilever",
+    "turning-self-weight", "pin-beam",
+    # vibrations and rotation
+    "double-cross", "off-centre-masses", "deep-beam", "string-in-tension", "l-frame",
+    "rotating-cantilever", "rotating-rod",
+    # motion of flexible bodies
+    "composite-beam-dynamics",
 )
 
 
