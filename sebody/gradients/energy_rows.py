@@ -36,6 +36,7 @@ from sebody.contract.layout import (
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import run_kernels
 from sebody.gradients.element_products import ROWS, run_element
+from sebody.gradients.laws import keeps
 from sebody.gradients.products import turn
 from sebody.kernels.loader import element_kernel
 from sebody.model.parts import Element, Superelement
@@ -71,6 +72,13 @@ class EnergyRows(Arrays):
     kept: NDArray
     loose: NDArray
 
+    @classmethod
+    def none(cls) -> EnergyRows:
+        """Room for no derivatives."""
+        none = np.zeros(0, dtype=np.int64)
+        return cls(none, none, none, np.zeros((0, 0)), none, np.zeros((2, 0, 0)),
+                   np.zeros((3, 0)), np.zeros(0))
+
 
 def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
     """Room for the derivatives of some of `layout.ENERGIES`.
@@ -91,7 +99,7 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
             massive[b] = strained[b] = 1
             continue
         massive[b], strained[b] = element_kernel(owner.kind).INERTIAL, elastic(owner)
-        if strained[b] and keeps_laws(owner) and wanted[STRAIN]:
+        if strained[b] and keeps(owner.kind) and wanted[STRAIN]:
             raise NoTape("strain energies of contacts")
     moves, points = np.zeros((1 + 2 * AXES, total)), []
     for block, first in run.numbering.dof_blocks.items():
@@ -111,11 +119,6 @@ def elastic(element: Element) -> bool:
     """Whether the force of an element at rest is that of its strain energy."""
     bare = element.time_function is None and element.function is None and element.law is None
     return bare and not element.multipliers and not element_kernel(element.kind).INERTIAL
-
-
-def keeps_laws(element: Element) -> bool:
-    """Whether the force of an element depends on numbers that it keeps, beside turns."""
-    return element_kernel(element.kind).MEMORY not in ((), ("angle",))
 
 
 @compiled

@@ -8,6 +8,7 @@ those of dependent positions to what they follow from.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -31,7 +32,8 @@ from sebody.contract.read_numbers import (
     TOTAL,
 )
 from sebody.gradients.element_products import ROWS, run_element
-from sebody.gradients.energy_rows import energy_rows, set_energy_rows
+from sebody.gradients.energy_rows import EnergyRows, energy_rows, set_energy_rows
+from sebody.gradients.held_states import put_state
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
@@ -104,48 +106,45 @@ class Followed:
         if not kinds <= DIFFERENTIATED:
             raise NoTape("residuals")
         self.kinematic = not kinds & {FORCE, TOTAL, ENERGY}
-        self.products: Products | None = None
-        if not self.kinematic:
-            self.products = Products.of(run)
-            if self.products is None:
-                raise NoTape("forces of elements without products")
+        products = Products.none() if self.kinematic else Products.of(run)
+        if products is None:
+            raise NoTape("forces of elements without products")
         read = [place for kind, place in states.tape.inputs if kind == ENERGY]
         energies, powers = ([p for p in read if (p >= POWERS) == of] for of in (False, True))
-        self.energies = energy_rows(run, energies) if energies else None
-        self.powers = power_rows(run, powers) if powers else None
         self.reading = states.reading()
         self.bars = np.zeros((len(self.reading.outputs), self.reading.numbers.size))
-        self.motions = motion_rows(run, self.reading, states.moving, states.resting) if (
-            MOTION in kinds) else None
+        self.parts = (products, energy_rows(run, energies) if energies else EnergyRows.none(),
+                      power_rows(run, powers),
+                      motion_rows(run, self.reading, states.moving, states.resting))
         self.places = states.depends()
         steady = not states.tape.steps and not linear.followers and np.isin(
             self.places[:, 0], (OF_Q, OF_V, OF_A)).all()
-        self._same: Rows | None = self._at(0) if steady else None
+        self._same: Rows | None = None      # where it is that of all states
+        self._same = self.at(0, 0) if steady else None
 
     def at(self, k: int, event: int) -> Rows:
         """Derivatives in a recorded state."""
-        return self._same or self._at(event)
+        return Rows(*(part[0] for part in self.over([event])))
 
-    def _at(self, event: int) -> Rows:
-        linear, history = self.linear, self.history
-        linear.put(history.rows[event], history.ends[event], history.besides[event])
-        refuse_kept(self.run, self.quantity)
-        rows = np.zeros((3, len(self.reading.outputs), linear.total))
-        products = self.products
-        parts, bars = (linear.system, linear.state, self.reading), self.bars
-        status = (_follow(*parts, self.places, bars, rows) if products is None else
-                  _follow_forces(*parts, self.places, bars, products, rows))
-        if status == OK and products is not None and self.energies is not None:
-            status = _follow_energies(*parts, bars, products, self.energies, rows)
-        if status == OK and products is not None and self.powers is not None:
-            status = _follow_powers(*parts, bars, products, self.powers, rows)
-        if status == OK and self.motions is not None:
-            status = _follow_motions(*parts, bars, self.motions, rows)
-        if status != OK or not np.isfinite(rows).all():
+    def over(self, events: Sequence[int]) -> Rows:
+        """The same in some states, (states, components, n) each."""
+        linear, history, count = self.linear, self.history, len(self.reading.outputs)
+        if self._same is not None:
+            return Rows(*(np.broadcast_to(part, (len(events), *part.shape))
+                          for part in self._same))
+        for event in events if remembering(self.run) else ():
+            linear.put(history.rows[event], history.ends[event], history.besides[event])
+            refuse_kept(self.run, self.quantity)
+        rows = np.zeros((len(events), 3, count, linear.total))
+        _follow_over(linear.system, linear.state, history.rows, history.ends, history.besides,
+                     np.array(events, dtype=np.int64), self.reading, self.places, self.bars,
+                     *self.parts, rows)
+        if not np.isfinite(rows).all():
+            k = int(np.argmin(np.isfinite(rows).all(axis=(1, 2, 3))))
             raise InputError(f"quantity {self.quantity!r} has no derivative at t = "
-                             f"{history.rows[event][0]:.6g}: it is not smooth there, as a length "
-                             "is not where it is zero: give its components, or another time")
-        return Rows(*rows[:, :, :linear.free])
+                             f"{history.rows[events[k]][0]:.6g}: it is not smooth there, as a "
+                             "length is not where it is zero: give its components, or another time")
+        return Rows(*rows[..., :linear.free].transpose(1, 0, 2, 3))
 
 
 def refuse_kept(run: Simulation, quantity: str) -> None:
@@ -193,23 +192,45 @@ def _set_bars(state, reading, places, c, bars, out):
 
 
 @compiled
-def _follow(system, state, reading, places, bars, out):
-    """Add the derivatives of all outputs, which depend on motions alone, to rows (3, c, total)."""
-    status = evaluate_loaded(system, state, reading)
+def _follow_over(system, state, history, ends, besides, events, reading, places, bars, products,
+                 energies, powers, motions, out):
+    """Add derivatives of all outputs in some states to rows (states, 3, c, total).
+
+    Rows of states in which something cannot be evaluated are no numbers.
+    """
+    for e in range(events.size):
+        put_state(system, state, history[events[e]], ends[events[e]], besides[events[e]])
+        status = evaluate_loaded(system, state, reading)
+        if status == OK and products.address.size > 0:
+            status = _follow_forces(system, state, reading, places, bars, products, out[e])
+        else:
+            _follow_motion(system, state, reading, places, bars, out[e])
+        if status == OK and energies.wanted.size > 0:
+            status = set_energy_rows(system, state, products, energies)
+        if status == OK and powers.places.size > 0:
+            status = set_power_rows(system, state, products, powers)
+        _add_energies(system, state, reading, bars, energies, powers, out[e])
+        if status == OK and reading.bodies.shape[0] > 0:
+            status = _follow_bodies(system, state, reading, bars, motions, out[e])
+        if status != OK:
+            out[e] = np.nan
+
+
+@compiled
+def _follow_motion(system, state, reading, places, bars, out):
+    """Add the derivatives by the recorded motion to rows (3, c, total)."""
     w = np.zeros(out.shape[2])
     for c in range(out.shape[1]):
         _set_bars(state, reading, places, c, bars[c], out)
         if system.links.dependent.shape[0] > 0:
             pull_back_bars(system, state, w, out[:, c])
-    return status
 
 
 @compiled
 def _follow_forces(system, state, reading, places, bars, products, out):
-    """The same of outputs that read forces of elements."""
-    status = evaluate_loaded(system, state, reading)
-    whole = reading.needs[TOTAL] == 1
-    if whole and status == OK:
+    """The same, and by forces of elements; a status."""
+    status, whole = OK, reading.needs[TOTAL] == 1
+    if whole:
         status = prepare(system, state, products)
     if not whole:
         for k in range(reading.batches.shape[0]):
@@ -241,24 +262,29 @@ def _follow_forces(system, state, reading, places, bars, products, out):
 
 
 @compiled
-def _follow_energies(system, state, reading, bars, products, energies, out):
-    """Add what outputs depend on by energies, in the state in which they were followed."""
-    status = set_energy_rows(system, state, products, energies)
+def _add_energies(system, state, reading, bars, energies, powers, out):
+    """Add what outputs depend on by energies and powers, in the state in which they were set."""
     for i in range(reading.inputs.shape[0]):
-        place = reading.inputs[i, 2]
-        if reading.inputs[i, 1] == ENERGY and place < POWERS:
-            _add_rows(system, state, bars[:, reading.inputs[i, 0]], energies.rows[:, place], out)
-    return status
+        at, kind, place = reading.inputs[i, 0], reading.inputs[i, 1], reading.inputs[i, 2]
+        if kind == ENERGY and place < POWERS:
+            _add_rows(system, state, bars[:, at], energies.rows[:, place], out)
+        for p in range(powers.places.size):
+            if kind == ENERGY and place == powers.places[p]:
+                _add_rows(system, state, bars[:, at], powers.rows[:, p], out)
 
 
 @compiled
-def _follow_powers(system, state, reading, bars, products, powers, out):
-    """The same of powers of elements."""
-    status = set_power_rows(system, state, products, powers)
-    for i in range(reading.inputs.shape[0]):
-        for p in range(powers.places.size):
-            if reading.inputs[i, 1] == ENERGY and reading.inputs[i, 2] == powers.places[p]:
-                _add_rows(system, state, bars[:, reading.inputs[i, 0]], powers.rows[:, p], out)
+def _follow_bodies(system, state, reading, bars, motions, out):
+    """Add what outputs depend on by motions of bodies; a status."""
+    status = set_motion_rows(system, state, reading, motions)
+    w = np.zeros(out.shape[2])
+    found = np.zeros((3, 1, out.shape[2]))
+    for c in range(out.shape[1]):
+        found[:] = 0.0
+        add_motion_rows(reading, motions, bars[c], found, 0)
+        if system.links.dependent.shape[0] > 0:
+            pull_back_bars(system, state, w, found[:, 0])
+        out[:, c] += found[:, 0]
     return status
 
 

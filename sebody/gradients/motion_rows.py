@@ -55,7 +55,7 @@ def motion_rows(run: Simulation, reading: Reading, read: list[int], still: list[
     still : list of slice
         Numbers that do not depend on rates.
     """
-    widest = int(reading.bodies[:, 2].max())
+    widest = int(reading.bodies[:, 2].max(initial=0))
     steps = np.full(run.numbering.total, SMALL * run.model.size())
     for block, first in run.numbering.dof_blocks.items():
         if block.rotational:

@@ -18,7 +18,7 @@ from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.node_stresses import history_of, node_stress
 from sebody.gradients.segments import Segments
-from sebody.gradients.sensors import Sensor, rotation_vector, smoothly
+from sebody.gradients.sensors import Sensor, rotation_vector, rows_over, smoothly
 from sebody.gradients.sweeps import Bars
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
@@ -164,27 +164,22 @@ class Seen:
 
     def at(self, event: int) -> Bars | None:
         """Derivatives of all objectives by the state that an event leaves."""
-        k, found = self.place.get(event), None
-        if k is None:
+        if event not in self.acting:
             return None
-        for one in self.looked:
-            if not one.seeds[k].any():
-                continue
-            found = found or Bars(*(np.zeros((self.free, len(self.whole.value))) for _ in range(3)))
-            for own, bar in zip(found, one.sensor.at(k, event), strict=True):
-                own[:, one.columns] += bar.T @ one.seeds[k]
-        return found
+        found, _ = self.of_events(event, event)
+        return Bars(*(part.T for part in found[0].transpose(1, 0, 2)))
 
     def of_events(self, first: int, last: int) -> tuple[NDArray, NDArray]:
         """The same of some events, (events, m, 3, n), and which of them have any, (events,)."""
         found = np.zeros((last + 1 - first, len(self.whole.value), 3, self.free))
-        acting = np.zeros(len(found), dtype=bool)
-        for e in range(len(found)):
-            bars = self.at(first + e) if first + e in self.acting else None
-            if bars is not None:
-                acting[e] = True
-                for c, bar in enumerate(bars):
-                    found[e, :, c] = bar.T
+        acting = np.array([event in self.acting for event in range(first, last + 1)])
+        for one in self.looked:
+            events = [event for event in range(first, last + 1)
+                      if event in self.acting and one.seeds[self.place[event]].any()]
+            states = [self.place[event] for event in events]
+            for part, rows in enumerate(rows_over(one.sensor, states, events) if events else ()):
+                found[np.array(events) - first, one.columns, part] += np.einsum(
+                    "ecn,ecm->emn", rows, one.seeds[states])
         return found, acting
 
     def explicit(self, made: Simulation, rows: NDArray) -> NDArray:

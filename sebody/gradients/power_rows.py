@@ -21,7 +21,8 @@ from sebody.contract.layout import ENERGY, OK, POWERS, PREPARE, TRANSPOSED
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import run_part
 from sebody.gradients.element_products import ROWS, run_element
-from sebody.gradients.energy_rows import elastic, keeps_laws
+from sebody.gradients.energy_rows import elastic
+from sebody.gradients.laws import keeps
 from sebody.gradients.products import turn
 from sebody.kernels.abi import pointer_to
 from sebody.model.parts import Superelement
@@ -68,7 +69,7 @@ def power_rows(run: Simulation, places: list[int]) -> PowerRows:
         first = numbering.forces_at[owner]
         b = int(np.searchsorted(system.at_g, first, side="right")) - 1
         k = int((first - system.at_g[b]) // system.width[b])
-        if elastic(owner) and keeps_laws(owner):
+        if elastic(owner) and keeps(owner.kind):
             raise NoTape("powers of contacts")
         elements.append((b, k, before[b] + k, elastic(owner)))
     return PowerRows(np.array(places, dtype=np.int64),

@@ -73,6 +73,13 @@ class Products(Arrays):
     kept: NDArray
 
     @classmethod
+    def none(cls) -> "Products":
+        """Products of no element."""
+        none = np.zeros(0, dtype=np.int64)
+        return cls(none, none, none, np.zeros(0), np.zeros(0), np.zeros(0), np.zeros((4, 0)),
+                   none.reshape(0, laws.BATCH + 1), np.zeros((2, 0)))
+
+    @classmethod
     def of(cls, run: Simulation) -> "Products | None":
         """Those of a model; None if it has an element without them."""
         system = run.system

@@ -1,5 +1,6 @@
 """Derivatives of quantities by the states of a run."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -32,6 +33,14 @@ class Sensor(Protocol):
 
     def at(self, k: int, event: int) -> Rows:
         """Derivatives in a recorded state."""
+
+
+def rows_over(sensor: Sensor, states: Sequence[int], events: Sequence[int]) -> Rows:
+    """Derivatives in some recorded states, (states, components, n) each."""
+    if isinstance(sensor, Followed):
+        return sensor.over(events)
+    return Rows(*map(np.array, zip(*(sensor.at(k, event) for k, event in zip(
+        states, events, strict=True)), strict=True)))
 
 
 def put(linear: Linear, history: History, event: int) -> None:
