@@ -9,6 +9,7 @@ from sebody.pictures.colouring import colourings
 from sebody.pictures.scene import scenery
 
 STATES = 301        # of those among which it is chosen
+LETTERS = 1.7       # over those of a film: cards of the gallery are a third of its size
 
 
 def write_still(result: Result, path: Path) -> None:
@@ -19,7 +20,7 @@ def write_still(result: Result, path: Path) -> None:
     fields = {one.name: one for one in colourings(drawn.bodies, drawn.units)}
     field = fields.get("von_mises") or fields.get("displacement")
     frame = field.frame if field else len(drawn.t) // 3
-    picture, = film.pictures(drawn, "", [frame], field and field.name)
+    picture, = film.pictures(drawn, "", [frame], field and field.name, LETTERS)
     imsave(path, picture)
 
 

@@ -4,7 +4,7 @@ The weight is let go where the spring is not strained; it also sways and turns a
 wire ends on one side of the coil.
 
 Look at ``weight.position.z`` and ``weight.rotation.yx``: the weight falls by twice the deflection
-at rest, which the stiffness ``G d^4 / (8 D^3 n)`` gives within 1 % with half the weight of the
+at rest, which the stiffness `G d^4 / (8 D^3 n)` gives within 1 % with half the weight of the
 spring, and turns a little, for a spring that is stretched unwinds.
 """
 

@@ -53,6 +53,11 @@ class Units(NamedTuple):
         return re.sub("length|mass|force|time", lambda word: getattr(self, word[0]), words)
 
 
+def of_rates(units: Units | None, words: str = "rad/time") -> str:
+    """The unit of a rate, ``rad/time`` or ``1/time``; without units that of seconds."""
+    return words.replace("time", units.time if units else "s")
+
+
 def parsed_units(text: Any, what: str = "units") -> Units | None:
     """A set of units from its text; None for an empty one.
 

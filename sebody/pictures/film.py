@@ -39,6 +39,8 @@ BELOW = 40              # rows of the legend's colours that are put below a pict
 CLEAR = 0.6             # of rigid bodies, so that joints show through them
 ROOM = 1.12             # of the picture, over what moves
 LEGEND = 0.03, 0.155, 0.26, 0.028      # left, bottom, width and height of the bar, of the picture
+LOW = 0.09              # bottom of a bar without lines below it, in a single picture,
+FREE = 0.28             # and what is kept free for it below the model, of half of the height
 
 
 def check_film(suffix: str) -> None:
@@ -105,25 +107,35 @@ def _indexed(pictures: Iterator[NDArray], valued: bool) -> "Iterator[Image.Image
         yield whole.quantize(COLOURS[valued], dither=Image.Dither.NONE).crop((0, 0, width, height))
 
 
-def pictures(drawn: Scenery, title: str, frames: ArrayLike, colour: str | None
-             ) -> Iterator[NDArray]:
-    """Pictures (height, width, 3) of some frames."""
+def pictures(drawn: Scenery, title: str, frames: ArrayLike, colour: str | None,
+             letters: float = 1.0) -> Iterator[NDArray]:
+    """Pictures (height, width, 3) of some frames.
+
+    Parameters
+    ----------
+    letters : float
+        Size of letters and lines over that of a film, for pictures that are shown small.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=SIZE, dpi=DPI)
+    figure = Figure(figsize=(SIZE[0] / letters, SIZE[1] / letters), dpi=DPI * letters)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set_axis_off()
     eye, half = _eye(drawn)
-    axes.set_xlim(-half * SIZE[0] / SIZE[1], half * SIZE[0] / SIZE[1])
-    axes.set_ylim(-half, half)
+    moves = np.size(frames) > 1
+    free = 0.0 if moves or colour is None else FREE * half
+    wide = (half + free / 2) * SIZE[0] / SIZE[1]
+    axes.set_xlim(-wide, wide)
+    axes.set_ylim(-half - free, half)
     axes.text(0.015, 0.95, title, transform=axes.transAxes, color=INK, fontsize=13)
     weight = np.linalg.norm(drawn.gravity)
-    add_axes_of_space(figure, eye, (0.89, 0.06, 0.1, 0.1 * SIZE[0] / SIZE[1]),
+    side = 0.1 * letters
+    add_axes_of_space(figure, eye, (0.99 - side, 0.06 * letters, side, side * SIZE[0] / SIZE[1]),
                       drawn.gravity / weight if weight > 0 else None, drawn.planar)
     bodies = _Bodies(drawn, colour)
-    values = bodies.add_legend(figure)
+    values = bodies.add_legend(figure, letters, moves)
     clock = axes.text(0.985, 0.03, "", transform=axes.transAxes, ha="right", color=INK)
     painter, marks = Painter(axes), Marks(axes, drawn, eye)
     for k in frames:
@@ -158,13 +170,17 @@ class _Bodies:
         self._field = next((one for one in fields if one.name == colour), None)
         self.most = 0.0         # the largest value of the last picture
 
-    def add_legend(self, figure: "Figure") -> "Text | None":
-        """The legend, and a text for the largest value of a picture."""
+    def add_legend(self, figure: "Figure", letters: float, moves: bool) -> "Text | None":
+        """The legend; of a film also its largest value, and a text for that of a picture."""
         field = self._field
         if field is None:
             return None
         title = f"{field.title} [{field.unit}]" if field.unit else field.title
-        axes = add_legend(figure, title, 0.0, field.largest, LEGEND)
+        left, bottom, width, height = LEGEND
+        box = (left, bottom if moves else LOW, width * letters, height * letters)
+        axes = add_legend(figure, title, 0.0, field.largest, box)
+        if not moves:
+            return None
         axes.text(0.0, -2.6, f"largest {short(field.largest)} at t = "
                   f"{short(self._drawn.t[field.frame])}, "
                   f"{self._drawn.bodies[field.body].name}", transform=axes.transAxes, fontsize=9,

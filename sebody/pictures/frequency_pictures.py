@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.units import Units, of_rates
 from sebody.pictures.palette import CURVES
 from sebody.pictures.plots import INK, PALE, STYLE, check_picture, write_picture
 from sebody.results.naming import component_names
+from sebody.results.units import with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,10 +39,11 @@ class Diagram(NamedTuple):
     damping: NDArray
     whirl: NDArray
     frame: str
+    units: Units | None = None
 
 
-def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[str, NDArray]
-                  ) -> Path:
+def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[str, NDArray],
+                  units: Units | None = None) -> Path:
     """Draw amplitudes and phases of quantities over the angular frequency."""
     check_picture(path)
     from matplotlib import rc_context
@@ -58,7 +61,8 @@ def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[
                 line, full = next(lines), f"{name}.{label}" if label else name
                 axis.semilogy(omega, np.abs(part), label=full, **line)
                 axes[-1].plot(omega, np.degrees(np.angle(part)), **line)
-            axis.set(title=f"{name} under {load!r} of amplitude 1", ylabel="amplitude")
+            axis.set(title=f"{name} under {load!r} of amplitude 1",
+                     ylabel=with_unit("amplitude", name, units))
             axis.margins(x=0.0)
             if not axis.lines:
                 axis.set_yticks([])
@@ -66,7 +70,8 @@ def save_response(path: str | Path, load: str, omega: NDArray, answers: Mapping[
                           color=PALE)
             add_legend(axis)
         axes[-1].set(title="phase", ylabel="phase [degrees]", ylim=(-190, 190),
-                     xlabel="angular frequency [rad/time]", yticks=[-180, -90, 0, 90, 180])
+                     xlabel=f"angular frequency [{of_rates(units)}]",
+                     yticks=[-180, -90, 0, 90, 180])
         write_picture(figure, path, 150)
     return Path(path)
 
@@ -91,7 +96,8 @@ def save_campbell(path: str | Path, diagram: Diagram, orders: NDArray,
         growth = diagram.growth
         _add_modes(lower, diagram, growth)
         lower.set(title="real parts of the eigenvalues: unstable above zero",
-                  ylabel="real part [1/time]", xlabel="speed of rotation [rad/time]",
+                  ylabel=f"real part [{of_rates(diagram.units, '1/time')}]",
+                  xlabel=f"speed of rotation [{of_rates(diagram.units)}]",
                   ylim=(1.1 * min(growth.min(), -least), 1.1 * max(growth.max(), least)))
         lower.axhline(0.0, color=PALE, linewidth=0.8, zorder=1)
         lower.margins(x=0.0)
@@ -106,7 +112,7 @@ def draw_campbell(axes: "Axes", diagram: Diagram, orders: NDArray, crossings: ND
     _draw_orders(axes, diagram.speeds, top, orders)
     axes.plot(*crossings.T, "o", color=INK, markersize=4, zorder=5)
     axes.set(title=f"natural frequencies in {diagram.frame} axes", ylim=(0.0, top),
-             ylabel="angular frequency [rad/time]")
+             ylabel=f"angular frequency [{of_rates(diagram.units)}]")
     axes.margins(x=0.0)
     if np.nanmax(np.abs(diagram.damping), initial=0.0) > UNDAMPED:
         axes.figure.colorbar(colours, ax=axes, label="damping ratio", extend="min", pad=0.02)

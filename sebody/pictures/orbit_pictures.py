@@ -16,13 +16,15 @@ EDGE = 1.15         # half width of a picture of orbits, of the largest half axi
 
 
 def save_synchronous(path: str | Path, speeds: NDArray,
-                     orbits: Mapping[str, tuple[NDArray, NDArray, NDArray]]) -> Path:
+                     orbits: Mapping[str, tuple[NDArray, NDArray, NDArray]], rate: str) -> Path:
     """Draw half axes and phases of quantities over the speed.
 
     Parameters
     ----------
     orbits : mapping of str to three of (m,)
         Longer half axis, shorter one, phase [rad].
+    rate : str
+        Unit of the speeds.
     """
     check_picture(path)
     from matplotlib import rc_context
@@ -42,7 +44,7 @@ def save_synchronous(path: str | Path, speeds: NDArray,
                   ylabel="half axis")
         add_legend(upper)
         lower.set(title="phase: the end of the longer axis is reached after this angle",
-                  ylabel="phase [degrees]", xlabel="speed of rotation [rad/time]", ylim=(-5, 185),
+                  ylabel="phase [degrees]", xlabel=f"speed of rotation [{rate}]", ylim=(-5, 185),
                   yticks=[0, 45, 90, 135, 180])
         for axes in (upper, lower):
             axes.margins(x=0.0)

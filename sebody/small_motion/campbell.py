@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
+from sebody.basics.units import Units, of_rates, parsed_units
 from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.pictures.frequency_pictures import ORDERS, Diagram, save_campbell
@@ -25,7 +26,8 @@ from sebody.small_motion.rotation.speeds import Rotations
 from sebody.small_motion.rotation.whirls import whirls
 
 SEEN = 1e-3         # of the highest frequency: that of a crossing that is marked
-HEADS = ("mode", "whirl", "[Hz] at {} rad/s", "[Hz] at {} rad/s", "largest real part [1/s]")
+HEADS = ("mode", "whirl", "[{hertz}] at {first} {rate}", "[{hertz}] at {last} {rate}",
+         "largest real part [{growth}]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,7 @@ class Campbell:
     frame: str
     reason: str
     whirl: NDArray
+    units: Units | None = None
 
     def __repr__(self) -> str:
         return tabular.text(*self._table())
@@ -67,9 +70,11 @@ class Campbell:
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
         first, last = (f"{speed:.6g}" for speed in (self.speeds[0], self.speeds[-1]))
         title = (f"{self.omega.shape[1]} modes at {len(self.speeds)} speeds from {first} to {last} "
-                 f"rad/s, in {self.frame} axes" + f" ({self.reason})" * bool(self.reason))
-        heads = tuple(head.format(speed) for head, speed in zip(
-            HEADS, ("", "", first, last, ""), strict=True))
+                 f"{of_rates(self.units)}, in {self.frame} axes"
+                 + f" ({self.reason})" * bool(self.reason))
+        heads = tuple(head.format(
+            hertz=self.units.of("1/time") if self.units else "Hz", first=first, last=last,
+            rate=of_rates(self.units), growth=of_rates(self.units, "1/time")) for head in HEADS)
         hertz = self.omega / (2 * np.pi)
         growths = np.where(np.abs(self.growth) > self.rounding, self.growth, 0.0)
         return title, heads, [
@@ -126,8 +131,8 @@ class Campbell:
             found = self.crossings(orders)
             vibrates = found.omega > SEEN * self.omega.max()
             marked = np.column_stack([found.speeds, found.omega])[vibrates]
-        return (Diagram(self.speeds, self.omega, self.growth, self.damping, self.whirl, self.frame),
-                orders, marked)
+        return (Diagram(self.speeds, self.omega, self.growth, self.damping, self.whirl, self.frame,
+                        self.units), orders, marked)
 
 
 def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, count: int = 8,
@@ -182,7 +187,7 @@ def campbell(model: Model, speeds: ArrayLike, axis: ArrayLike | None = None, cou
         np.array([of[own] for of, own in zip(each, chosen, strict=True)])
         for each in ([one.values for one in rows], [one.rounding for one in rows], names))
     return Campbell(speeds, values.imag, values.real, rounding, rotations.view.frame,
-                    rotations.view.reason, senses)
+                    rotations.view.reason, senses, parsed_units(model.units))
 
 
 def followed(last: Modes, own: NDArray, now: Modes) -> NDArray:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.assembly.evaluation import evaluate
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
+from sebody.basics.units import Units, of_rates, parsed_units
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.model.model import Model
@@ -24,6 +25,7 @@ from sebody.model.parts import Element, Node
 from sebody.pictures.frequency_pictures import save_response
 from sebody.results.naming import component_names
 from sebody.results.result import Result
+from sebody.results.units import with_unit
 from sebody.runs.simulation import Simulation
 from sebody.small_motion.given_state import state_of
 from sebody.small_motion.linearization import small_motion, warn_of_spin
@@ -31,7 +33,7 @@ from sebody.small_motion.moved_states import differences, moves, refuse_unmoved
 from sebody.small_motion.rotation.azimuths import steady
 from sebody.small_motion.rotation.views import View, view
 
-HEADS = "quantity", "largest amplitude", "phase [deg]", "at [Hz]"
+HEADS = "quantity", "largest amplitude", "phase [deg]", "at [{}]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,17 +47,23 @@ class FrequencyResponse:
     load: str
     omega: NDArray
     answers: dict[str, NDArray]
+    units: Units | None = None
 
     def __repr__(self) -> str:
-        return tabular.text(self._title(), HEADS, self._rows())
+        return tabular.text(self._title(), self._heads(), self._rows())
 
     def _repr_html_(self) -> str:
         """What notebooks show."""
-        return tabular.titled(self._title(), HEADS, self._rows())
+        return tabular.titled(self._title(), self._heads(), self._rows())
+
+    def _heads(self) -> tuple[str, ...]:
+        frequency = self.units.of("1/time") if self.units else "Hz"
+        return tuple(head.format(frequency) for head in HEADS)
 
     def _title(self) -> str:
         return (f"response to a unit of {self.load!r}, {len(self.omega)} frequencies from "
-                f"{self.omega.min(initial=np.inf):.6g} to {self.omega.max(initial=0.0):.6g} rad/s")
+                f"{self.omega.min(initial=np.inf):.6g} to {self.omega.max(initial=0.0):.6g} "
+                f"{of_rates(self.units)}")
 
     def _rows(self) -> Iterator[tuple[str, ...]]:
         """The largest response of every component of every quantity."""
@@ -63,7 +71,8 @@ class FrequencyResponse:
             columns = answer.reshape(len(self.omega), -1).T
             for label, column in zip(component_names(answer, name), columns, strict=True):
                 k = int(np.argmax(np.abs(column)))
-                yield (f"{name}.{label}".rstrip("."), f"{abs(column[k]):.6g}",
+                full = f"{name}.{label}".rstrip(".")
+                yield (with_unit(full, full, self.units), f"{abs(column[k]):.6g}",
                        f"{np.degrees(np.angle(column[k])):.4g}",
                        f"{self.omega[k] / (2 * np.pi):.6g}")
 
@@ -79,7 +88,7 @@ class FrequencyResponse:
         InputError
             A picture that cannot be made.
         """
-        return save_response(path, self.load, self.omega, self.answers)
+        return save_response(path, self.load, self.omega, self.answers, self.units)
 
 
 def frequency_response(run: Simulation | Result | Model, load: str, quantities: str | Iterable[str],
@@ -135,7 +144,8 @@ def frequency_response(run: Simulation | Result | Model, load: str, quantities: 
         forces, push = by_amplitude(run, _load(run, load))
         X = harmonic_motions(matrices, axes.pushed(run, push), omega)
         return FrequencyResponse(load, omega, harmonic_quantities(
-            run, axes, names, X, omega, np.tile(forces, (len(omega), 1))))
+            run, axes, names, X, omega, np.tile(forces, (len(omega), 1))),
+            parsed_units(run.model.units))
 
 
 def _load(run: Simulation | Result, name: str) -> Element:

@@ -17,10 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
+from sebody.basics.units import Units, of_rates, parsed_units
 from sebody.model.model import Model
 from sebody.model.numbering import coordinates
 from sebody.model.parts import Node
 from sebody.pictures.orbit_pictures import save_orbits, save_synchronous
+from sebody.results.units import with_unit
 from sebody.runs.rotating_frame import motion
 from sebody.small_motion.frequency import harmonic_motions, harmonic_quantities
 from sebody.small_motion.linearization import small_motion
@@ -29,7 +31,7 @@ from sebody.small_motion.rotation.azimuths import steady
 from sebody.small_motion.rotation.speeds import Rotations
 from sebody.small_motion.rotation.whirls import Ellipses, directions_across, on_axis
 
-HEADS = "quantity", "largest half axis", "other half axis", "at [rad/s]", "whirl"
+HEADS = "quantity", "largest half axis", "other half axis", "at [{}]", "whirl"
 EQUAL = 1e-9        # of a rate: others that are the same
 
 
@@ -59,26 +61,30 @@ class SynchronousResponse:
     answers: dict[str, NDArray]
     frame: str
     reason: str
+    units: Units | None = None
 
     def __repr__(self) -> str:
-        return tabular.text(self._title(), HEADS, self._rows())
+        return tabular.text(self._title(), self._heads(), self._rows())
 
     def _repr_html_(self) -> str:
         """Table that notebooks show."""
-        return tabular.titled(self._title(), HEADS, self._rows())
+        return tabular.titled(self._title(), self._heads(), self._rows())
+
+    def _heads(self) -> tuple[str, ...]:
+        return tuple(head.format(of_rates(self.units)) for head in HEADS)
 
     def _title(self) -> str:
         first, last = self.speeds.min(), self.speeds.max()
         return (f"synchronous response at {len(self.speeds)} speeds from {first:.6g} to "
-                f"{last:.6g} rad/s, in {self.frame} axes ({self.reason})")
+                f"{last:.6g} {of_rates(self.units)}, in {self.frame} axes ({self.reason})")
 
     def _rows(self) -> list[tuple[str, ...]]:
         rows: list[tuple[str, ...]] = []
         for name in self.answers:
             one = self.orbit(name)
             k = int(np.argmax(one.major))
-            rows.append((name, f"{one.major[k]:.6g}", f"{abs(one.minor[k]):.6g}",
-                         f"{self.speeds[k]:.6g}", str(one.whirl[k])))
+            rows.append((with_unit(name, name, self.units), f"{one.major[k]:.6g}",
+                         f"{abs(one.minor[k]):.6g}", f"{self.speeds[k]:.6g}", str(one.whirl[k])))
         return rows
 
     def __getitem__(self, name: str) -> NDArray:
@@ -99,7 +105,8 @@ class SynchronousResponse:
         """
         orbits = {name: self.orbit(name) for name in self.answers}
         return save_synchronous(path, self.speeds, {
-            name: (one.major, one.minor, one.phase) for name, one in orbits.items()})
+            with_unit(name, name, self.units): (one.major, one.minor, one.phase)
+            for name, one in orbits.items()}, of_rates(self.units))
 
     def save_orbits(self, path: str | Path, speed: float) -> Path:
         """Draw the orbits at the speed that is nearest: png, pdf or svg (extra ``plot``).
@@ -112,9 +119,9 @@ class SynchronousResponse:
             A picture that cannot be made.
         """
         k = int(np.argmin(np.abs(self.speeds - inputs.number(speed, "speed"))))
-        return save_orbits(path, f"orbits at {self.speeds[k]:.6g} rad/time", {
-            f"{name}, {self.orbit(name).whirl[k]}": values[k] @ self.across
-            for name, values in self.answers.items()})
+        return save_orbits(path, f"orbits at {self.speeds[k]:.6g} {of_rates(self.units)}", {
+            with_unit(f"{name}, {self.orbit(name).whirl[k]}", name, self.units):
+            values[k] @ self.across for name, values in self.answers.items()})
 
 
 def synchronous_response(model: Model, speeds: ArrayLike,
@@ -165,7 +172,7 @@ def synchronous_response(model: Model, speeds: ArrayLike,
     answers = {name: np.array([row[name] for row in rows]) for name in names}
     return SynchronousResponse(speeds, abs(factor) * speeds,
                                directions_across(rotations.unit.times(np.sign(factor))), answers,
-                               view.frame, view.reason)
+                               view.frame, view.reason, parsed_units(model.units))
 
 
 def _names(rotations: Rotations, quantities: str | Iterable[str] | None) -> list[str]:

@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,9 @@ from scipy.spatial.transform import Rotation
 
 from sebody import Result, simulate
 from sebody.analysis import equilibrium
-from sebody.catalogue import scenes
+from sebody.assembly.numbering import number
+from sebody.catalogue import builder, scenes
+from sebody.quantities.names import split
 from sebody.scenes import (
     ball_on_beam,
     blade,
@@ -43,6 +46,9 @@ def run(scene, t_end=None) -> Result:
 def test_a_scene_has_what_its_page_shows(gallery, name):
     scene = gallery.entry(name)
     assert scene.look and 1 <= len(scene.quantities) <= 4
+    model = builder(name)().model
+    parts = SimpleNamespace(model=model, numbering=number(model))
+    assert all(split(parts, quantity) for quantity in scene.quantities)     # names that it has
     assert 10 <= len(scene.code.splitlines()) <= gallery.LONGEST
     assert gallery.tests_of(scene)
 

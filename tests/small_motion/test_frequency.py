@@ -178,7 +178,7 @@ def test_a_campbell_diagram_tells_whirls_and_damping(monkeypatch):
     assert {text.get_text() for text in upper.texts} == {"1 x speed", "2 x speed"}
     assert upper.get_title(loc="left") == "natural frequencies in standing axes"
     assert bar.get_ylabel() == "damping ratio"
-    assert lower.get_ylabel() == "real part [1/time]"
+    assert lower.get_ylabel() == "real part [1/s]"     # as of a model without units
 
 
 def test_a_response_names_its_curves(monkeypatch):
@@ -195,6 +195,27 @@ def test_a_response_names_its_curves(monkeypatch):
     assert one.get_title(loc="left") == "tip.position under 'push' of amplitude 1"
     assert other.texts[0].get_text() == "no response" and other.get_legend() is None
     assert [line.get_ydata()[0] for line in phase.lines] == [0.0, 90.0]
+
+
+def test_units_of_a_model_stand_in_tables_and_pictures(monkeypatch):
+    """Frequencies by the model's unit of time, quantities by their own."""
+    pytest.importorskip("matplotlib")
+    model = oscillator()
+    model.units = "mm kg ms kN"
+    response = frequency_response(equilibrium(model, 1), "push", "weight.position",
+                                  np.linspace(1, 30, 20))
+    text = repr(response)
+    assert "30 rad/ms" in text and "at [1/ms]" in text and "weight.position.x [mm]" in text
+    axes = drawn(monkeypatch, lambda: response.save_picture("a.png")).axes
+    assert axes[0].get_ylabel() == "amplitude [mm]"
+    assert axes[-1].get_xlabel() == "angular frequency [rad/ms]"
+    spun, _ = rotor(False)
+    spun.units = "mm kg ms kN"
+    diagram = campbell(spun, [0.0, 3.0], (0, 0, 1), 3)
+    assert all(word in repr(diagram) for word in ("to 3 rad/ms", "[1/ms] at 3 rad/ms"))
+    axes = drawn(monkeypatch, lambda: diagram.save_picture("a.png")).axes
+    assert axes[0].get_ylabel() == "angular frequency [rad/ms]"
+    assert axes[1].get_ylabel() == "real part [1/ms]"
 
 
 def test_pictures_and_what_a_diagram_refuses(tmp_path):
