@@ -120,3 +120,10 @@ PLANAR_MEAN_AXES = _function("frame_search", "planar_mean_axes", Gives.STATUS, p
                              frame=ADD, psi=WRITE)
 PLANAR_FIT = _function("frame_search", "planar_fit", Gives.STATUS, count=WHOLE, fit=READ, X=READ,
                        alpha=READ, x=READ, frame=WRITE)
+
+# places on paths: of a point and of what moves it
+PATH_PLACE = _function("paths", "path_place", Gives.STATUS, path=READ, s=REAL, y=READ,
+                       n=WHOLE, dimension=WHOLE, head=WRITE, shapes=WRITE, slopes=WRITE,
+                       bends=WRITE)
+PATH_CHANGE = _function("paths", "path_change", path=READ, bends=READ, dy=READ, n=WHOLE,
+                        dimension=WHOLE, changes=WRITE)

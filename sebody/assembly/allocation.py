@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.build import work_size
 from sebody.assembly.control import begin
+from sebody.assembly.memory_map import frame_numbers
 from sebody.contract.counts import LANES, whole_vectors
 from sebody.contract.layout import COEFFICIENTS, ENERGIES, FIELD
 from sebody.engine.clock import CLOCK, CONTROL
@@ -75,7 +76,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, d
         clock=clock, control=control)
     state.q[:], state.v[:], state.R[:] = q, v, R
     state.coefficients[FIELD:FIELD + model.dimension] = model.gravity_field
-    of_bodies = 9 * len(numbering.modes)
+    of_bodies = 9 * len(frame_numbers(model))
     state.frames[:of_bodies] = state.frames_old[:of_bodies] = _identities(of_bodies)
     begin(model, numbering, system.control, state.memory, state.frames)
     state.frames_old[of_bodies:] = state.frames[of_bodies:]

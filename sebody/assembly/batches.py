@@ -27,7 +27,8 @@ from sebody.assembly.equal_bodies import (
     many_alike,
     turn_row,
 )
-from sebody.contract.counts import CACHE_LINE
+from sebody.assembly.memory_map import frame_numbers
+from sebody.contract.counts import CACHE_LINE, axes_of, superelement_counts
 from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.engine.offsets import at_cache_lines
@@ -35,7 +36,8 @@ from sebody.kernels.loader import element_kernel, load
 from sebody.model.body_points import point_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, coordinates
-from sebody.model.parts import Element, Superelement
+from sebody.model.parts import Element, Node, Superelement
+from sebody.model.path_tables import path_numbers
 from sebody.reduction.body import ReducedBody
 
 # rows of constants of every body that is still in use: the next run of its model needs them again
@@ -117,7 +119,7 @@ def make_batches(model: Mechanism, numbering: Numbering) -> Batches:
     elements = [*model.rigid_bodies.values(), *model.constraints, *model.loads]
     idle = [e for e in elements if not element_kernel(e.kind).POWER]
     working = [e for e in elements if element_kernel(e.kind).POWER]
-    frames = {body: k for k, body in enumerate(model.bodies.values())}
+    frames = frame_numbers(model)
     joints = _element_batches(numbering, constants, idle, frames)
     loads = _element_batches(numbering, constants, [e for e in working if e.law is None], frames)
     # these set amplitudes of the loads behind them
@@ -172,7 +174,7 @@ def _constants_of(body: Superelement, known: dict[tuple, tuple[int, int]],
 
 
 def _element_batches(numbering: Numbering, constants: _Constants, elements: Iterable[Element],
-                     frames: Mapping[Superelement, int]) -> list[Batch]:
+                     frames: Mapping[Superelement | Element, int]) -> list[Batch]:
     """Batches of elements; those on bodies use the frame of their body."""
     batches: dict[tuple, Batch] = {}
     for element in elements:
@@ -187,6 +189,9 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
         behind = [] if element.function is None else [element.function.address]
         if element.point is not None:
             behind = [frames[element.point.body]]
+        if element.path is not None:
+            carrier = element.path.here.carrier
+            behind = [frames[element if isinstance(carrier, Node) else carrier]]
         if element.body is not None:
             columns = 0 if element.series is None else len(element.series.names)
             behind = [numbering.series.get(element, 0), columns]
@@ -218,6 +223,8 @@ def _law_batches(model: Mechanism, numbering: Numbering, constants: _Constants,
 
 def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
     """The row of constants; with what places the frame of a body, and a point in it."""
+    if element.path is not None:
+        return _path_constants(element, kernel)
     body = element.body if element.point is None else element.point.body
     if body is None:
         return constants_row(element.name, kernel, {}, element.constants)
@@ -230,9 +237,25 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
     return constants_row(element.name, kernel, counts_of(body) | {"series": series}, values)
 
 
+def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
+    """The row of constants of a point on a path: what places the frame, and the path."""
+    assert element.path is not None
+    carrier = element.path.here.carrier
+    path = path_numbers(element.path.path, element.path.piece)
+    if isinstance(carrier, Node):
+        planar = len(carrier.point) == 2
+        counts = axes_of(planar) | superelement_counts(1, 1, planar, element.path.here.carrier_width)
+        values: dict[str, ArrayLike] = {"alphas": [1.0], "fits": [1.0], "alpha_rs": [1.0],
+                                        "X": np.zeros((1, len(carrier.point)))}
+    else:
+        counts, values = counts_of(carrier), frame_constants(carrier)
+    return constants_row(element.name, kernel, {**counts, "path": len(path)},
+                         values | {"path": path})
+
+
 def _matrices(numbering: Numbering, element: Element) -> list[int]:
     """Numbers of the rotation matrices; on planar bodies angles are counted by zeros."""
-    if element.body is not None or element.point is not None:
+    if element.body is not None or any(element.carried):
         return [numbering.rotations.get(t, 0) for t in element.dof_blocks if t.rotational]
     return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]
 
@@ -251,11 +274,10 @@ def _append(batches: dict[tuple, Batch], kernel: ModuleType, frame: int, row: li
 def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     """Coordinates of an element, then its multipliers."""
     unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
-    if element.point is not None:       # internal modes come behind the nodes of the body
-        body = element.point.body
-        at, first = element.firsts[len(body.attachments)], numbering.modes[body.name]
-        unknowns[at - body.reduced.modes:at - body.reduced.modes] = range(
-            first, first + body.reduced.modes)
+    places, modes = element.carried
+    if modes:       # internal modes come behind the nodes of the body
+        at, first = element.firsts[places] - modes, numbering.modes[_carrier(element)]
+        unknowns[at:at] = range(first, first + modes)
     if element.body is not None:
         first = numbering.modes[element.body.name]
         unknowns += range(first, first + element.body.reduced.modes)
@@ -263,10 +285,18 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
         unknowns += [numbering.modes[body] + mode for body, mode in element.law.modes]
     if element.mode is not None:
         unknowns.append(numbering.modes[element.mode[0]] + element.mode[1])
-    if element.multipliers:
+    if element.equations.multipliers:
         first = numbering.multipliers[element]
-        unknowns += range(first, first + element.multipliers)
+        unknowns += range(first, first + element.equations.multipliers)
     return unknowns + numbering.reads.get(element, [])
+
+
+def _carrier(element: Element) -> str:
+    """Name of the body whose coordinates come first."""
+    if element.path is not None:
+        return element.path.here.carrier.name
+    assert element.point is not None
+    return element.point.body.name
 
 
 def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:

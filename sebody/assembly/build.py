@@ -112,9 +112,11 @@ def work_size(model: Mechanism) -> int:
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, len(one.body.reduced.stiffness),
                           len(one.body.rotations)) for one in model.loads if one.body is not None]
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0,
-                          one.firsts[-1] + one.dof_blocks[-1].start.size,
-                          len(one.point.body.rotations))
+                          one.width, len(one.point.body.rotations))
              for one in model.loads if one.point is not None]
+    rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, one.width,
+                          max(sum(place.kind == "rotation" for place in one.attachments), 1))
+             for one in model.constraints if one.path is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     laws = dependences(model, [one for one in model.loads if one.law is not None])
     rows += [_law_scratch(model, law, depends.numbers) for law, depends in laws.items()]
@@ -142,7 +144,7 @@ def _parts(model: Mechanism, numbering: Numbering) -> NDArray:
             if dof_block is not None and dof_block in numbering.dof_blocks:
                 own = stretch(numbering, dof_block)
                 firsts[own] = own.start
-    for equation in model.constraints:
+    for equation in model.constraints:      # those that share multipliers have none of their own
         first = numbering.multipliers[equation]
         firsts[first:first + equation.multipliers] = first
     return firsts
@@ -171,4 +173,6 @@ def _magnitude(model: Mechanism, numbering: Numbering) -> NDArray:
         for dof_block, magnitude in ((node.position, length), (node.rotation, 1.0)):
             if dof_block is not None and dof_block in numbering.dof_blocks:
                 size[stretch(numbering, dof_block)] = magnitude
+    for way in model.ways():
+        size[stretch(numbering, way)] = length
     return size

@@ -69,7 +69,7 @@ def check_element(element: Element, kernel: ModuleType, unknowns: int,
     """
     matrices = sum(t in numbering.rotations for t in element.dof_blocks)
     wrong = _different((("unknowns", unknowns, kernel.WIDTH),
-                        ("multipliers", element.multipliers, kernel.MULTIPLIERS),
+                        ("multipliers", element.equations.multipliers, kernel.MULTIPLIERS),
                         ("multipliers of a joint to read",
                          len(numbering.reads.get(element, ())), kernel.READS),
                         ("positions", positions_of(element), kernel.N_POSITIONS),
@@ -172,10 +172,10 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 def positions_of(element: Element) -> int:
     """How many positions an element is on; an internal mode counts as one.
 
-    Of a contact inside a body those of the body.
+    Of a contact inside a body, or a point on a path, those of the body.
     """
-    if element.point is not None:
-        return len(element.point.body.positions)
+    if places := element.carried[0]:
+        return sum(one.kind == "position" for one in element.attachments[:places])
     return sum(not t.rotational for t in element.dof_blocks) + (element.mode is not None)
 
 

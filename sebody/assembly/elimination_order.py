@@ -78,7 +78,10 @@ def _couplings(model: Mechanism, owners: Owners,
 
 def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[DofBlock]]:
     """Of every constraint the DOF blocks that its multipliers follow."""
-    awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} for c in model.constraints}
+    ways = set(model.ways())        # which follow the multipliers
+    awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} - ways for c in model.constraints}
+    for c in model.constraints:
+        awaited[c.equations] |= awaited[c]
     joints = [joint for joint in model.joints if joint.constraints]
     of_joint = [{k for c in joint.constraints for key in awaited[c]
                  for k in owners.get(key, ())} for joint in joints]

@@ -14,14 +14,14 @@ from sebody.model.control_order import actuators, sampled, signals
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import MemoryMap
-from sebody.model.parts import Element, Superelement
+from sebody.model.parts import Element, Node, Superelement
 
 
 def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int],
                angles: Mapping[Element, int]) -> MemoryMap:
     """Number what is stored; `ports` are those of loads, `angles` those that laws keep."""
-    memories, first = {}, 9 * len(model.bodies)
-    for one in model.loads:
+    memories, first = {}, 9 * len(frame_numbers(model))
+    for one in (*model.loads, *(c for c in model.constraints if c.path is not None)):
         if count := angles.get(one, len(element_kernel(one.kind).MEMORY)):
             memories[one] = list(range(first, first + count))
             first += count
@@ -38,6 +38,13 @@ def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int],
     places = list(accumulate((len(one.states) for one in controllers), initial=first))
     states = {one.name: place for one, place in zip(controllers, places, strict=False)}
     return MemoryMap(memories, inputs, own, sensors, values, states, places[-1])
+
+
+def frame_numbers(model: Mechanism) -> dict[Superelement | Element, int]:
+    """Numbers of the frames of superelements, then of points on curves that nodes carry."""
+    curves = [c for c in model.constraints
+              if c.path is not None and isinstance(c.path.here.carrier, Node)]
+    return {owner: k for k, owner in enumerate((*model.bodies.values(), *curves))}
 
 
 def _sensors(model: Mechanism) -> list[Sensor]:

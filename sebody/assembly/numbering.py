@@ -109,7 +109,12 @@ class _Order:
         self.multipliers: dict[Element, int] = {}   # constraint -> first multiplier
         self._awaited = awaited
         self._constraints: dict[DofBlock, list[Element]] = defaultdict(list)     # on each DOF block
+        self._ways = {c: c.path.way for c in model.constraints
+                      if c.path is not None and c.shares is None and c.path.way.solved}
+        self._sharing = [c for c in model.constraints if c.shares is not None]
         for constraint in model.constraints:
+            if constraint.shares is not None:
+                continue
             for key in awaited[constraint]:
                 self._constraints[key].append(constraint)
             if not awaited[constraint]:
@@ -130,6 +135,11 @@ class _Order:
         self.multipliers[constraint] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
+        for one in self._sharing:
+            if one.shares is constraint:
+                self.multipliers[one] = self.multipliers[constraint]
+        if constraint in self._ways:        # behind the multipliers: it has no mass for a pivot
+            self.place(self._ways[constraint])
 
 
 def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, list[int]]:

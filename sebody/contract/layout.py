@@ -32,8 +32,9 @@ PREPARE, ALONG, TRANSPOSED = range(5, 8)
 # impact under way, and the depth
 AT_RATE, AT_IMPACT, AT_DEPTH = range(3)
 # status that a kernel returns: HALF_TURN if a node is rotated by nearly half a turn against the
-# frame of its body, NO_FRAME if the search for this frame does not converge
-OK, HALF_TURN, NO_FRAME = range(3)
+# frame of its body, NO_FRAME if the search for this frame does not converge, OFF_PATH if a point is
+# beyond the end of its path
+OK, HALF_TURN, NO_FRAME, OFF_PATH = range(4)
 
 
 class Part(NamedTuple):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OK, RECORD
+from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OFF_PATH, OK, RECORD
 from sebody.engine.arrays import Arrays
 
 DONE, CHUNK, FACTOR, SOLVE, FAILED, READ = range(6)     # what the loop returns
@@ -22,12 +22,12 @@ SHARE_MOVED, SHARE_SUM, SHARE_FACTORS, SHARE_SOLUTION, SHARE_BACK, HELP = range(
 CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after a correction
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK
-NOT_FINITE, SLOW, INACCURATE, GAP = range(max(HALF_TURN, NO_FRAME) + 1,
-                                          max(HALF_TURN, NO_FRAME) + 5)
+NOT_FINITE, SLOW, INACCURATE, GAP = range(OFF_PATH + 1, OFF_PATH + 5)
 NO_START, BAD_CONTROL, CONTACT, GROWS = range(GAP + 1, GAP + 5)
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
+    OFF_PATH: "a point is beyond the end of its path",
     NOT_FINITE: "the iteration matrix is singular or the solution diverged",
     SLOW: "Newton's iteration did not converge",
     INACCURATE: "the error of a step is above the tolerance",

@@ -34,7 +34,7 @@ def body_point(model: Mechanism, name: object, what: str) -> BodyPoint | None:
     if recovery is None:
         raise InputError(f"{what}: body {owner!r} has reduced matrices only, so where its FE nodes "
                          "are is unknown: reduce its FE model, by craig_bampton or import_body")
-    place = _place(recovery, label)
+    place = label_place(recovery, label)
     if place is None:
         called = [recovery.called(0), recovery.called(len(recovery.coordinates) - 1)]
         raise InputError(f"{what}: body {owner!r} has no FE node {label!r}: its "
@@ -49,7 +49,7 @@ def body_point(model: Mechanism, name: object, what: str) -> BodyPoint | None:
     return BodyPoint(body, place)
 
 
-def _place(recovery: Recovery, label: str) -> int | None:
+def label_place(recovery: Recovery, label: str) -> int | None:
     """Place of a node among those of the recovery, by its label, or number if it has none."""
     if not (label.isascii() and label.isdigit()):
         return None

@@ -22,6 +22,7 @@ from sebody.model.parts import (
     Joint,
     Motion,
     Node,
+    Path,
     Superelement,
 )
 from sebody.model.plane import Plane
@@ -53,6 +54,7 @@ class Mechanism:
     own_names: set[str] = field(default_factory=set, init=False)    # names given by the user
     default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
     sensors: dict[str, Sensor] = field(default_factory=dict, init=False)
+    paths: dict[str, Path] = field(default_factory=dict, init=False)
     controllers: dict[str, Controller] = field(default_factory=dict, init=False)
     gravity_field: NDArray = field(init=False)
     plane: Plane | None = field(default=None, init=False)   # of a planar model made from a spatial
@@ -84,7 +86,11 @@ class Mechanism:
     def dof_blocks(self) -> list[DofBlock]:
         """All DOF blocks, each once."""
         return list(dict.fromkeys(t for n in (*self.nodes.values(), *self.grounds)
-                                  for t in (n.position, n.rotation) if t is not None))
+                                  for t in (n.position, n.rotation) if t is not None)) + self.ways()
+
+    def ways(self) -> list[DofBlock]:
+        """Ways of points on paths, which are unknowns of their own."""
+        return list(dict.fromkeys(c.path.way for c in self.constraints if c.path is not None))
 
     def size(self) -> float:
         """Characteristic length of the model, at least one unit of length."""

@@ -20,6 +20,8 @@ from sebody.model import (
     joints,
     loads,
     nodes,
+    path_joints,
+    paths,
     sensors,
     series,
     shafts,
@@ -84,6 +86,10 @@ class Model(Mechanism):
     spherical = joints.spherical
     weld = joints.weld
     distance = joints.distance
+
+    path = paths.path
+    path_joint = path_joints.path_joint
+    drive_way = path_joints.drive_way
 
     drive_angle = drives.drive_angle
     drive_slide = drives.drive_slide

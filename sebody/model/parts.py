@@ -168,6 +168,66 @@ class BodyPoint(NamedTuple):
     place: int      # of the node among those of the recovery
 
 
+class PathPiece(NamedTuple):
+    """What a path has on one body, or a curve that is fixed on a node."""
+
+    carrier: Superelement | Node
+    places: tuple[int, ...]     # of its knots among the nodes of the body's recovery; none of a node
+    points: NDArray             # the knots at the start, global axes, (K, D) [length]
+    ways: NDArray               # of the knots along this piece, from 0 [length]
+    offset: float               # of the way along the whole path, where this piece begins
+
+    @property
+    def attachments(self) -> tuple[Attachment, ...]:
+        """Where the coordinates of the body are, without internal modes; or the node's."""
+        if isinstance(self.carrier, Node):
+            return positions(self.carrier) + rotations(self.carrier)
+        return self.carrier.attachments
+
+    @property
+    def modes(self) -> int:
+        """Internal modes of the body."""
+        return 0 if isinstance(self.carrier, Node) else self.carrier.reduced.modes
+
+    @property
+    def carrier_width(self) -> int:
+        """Coordinates of the body or node, with internal modes."""
+        return sum(one.dof_block.start.size for one in self.attachments) + self.modes
+
+
+@dataclass(eq=False, repr=False)
+class Path:
+    """A way along bodies, or along a curve on a node or the ground."""
+
+    name: str
+    pieces: tuple[PathPiece, ...]
+    blend: float            # length over which one body hands over to the next [length]
+    ends: tuple[str, str]   # refuse or straight
+
+    @property
+    def length(self) -> float:
+        """Of the undeformed path, along chords between its knots [length]."""
+        return float(self.pieces[-1].offset + self.pieces[-1].ways[-1])
+
+    def __repr__(self) -> str:
+        carriers = dict.fromkeys(piece.carrier.name for piece in self.pieces)
+        return (f"<Path {self.name!r} on {', '.join(carriers)}: length {self.length:.6g}, "
+                f"{sum(len(piece.ways) for piece in self.pieces)} knots>")
+
+
+class OnPath(NamedTuple):
+    """What makes an element of a point on a path: one for each piece, which share equations."""
+
+    path: Path
+    piece: int
+    way: DofBlock           # hidden: how far along the path the point is
+
+    @property
+    def here(self) -> PathPiece:
+        """The piece."""
+        return self.path.pieces[self.piece]
+
+
 class LawParts(NamedTuple):
     """What makes an element of a continuous controller."""
 
@@ -191,6 +251,8 @@ class Element:
     function: UserFunction | None = None    # compiled function of a user force, kept alive
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
     point: BodyPoint | None = None  # of a contact; the body's coordinates come first
+    path: OnPath | None = None      # of a point on a path; the body's coordinates come first
+    shares: "Element | None" = None     # whose multipliers it adds to
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     law: LawParts | None = None             # of a continuous controller
     series: LoadSeries | None = None    # of a load on a body: of the columns of its loads
@@ -205,11 +267,30 @@ class Element:
     @property
     def firsts(self) -> list[int]:
         """Where each of its attachments begins among its unknowns."""
-        own = [] if self.point is None else self.point.body.attachments
         sizes = [dof_block.start.size for dof_block in self.dof_blocks]
-        if self.point is not None:      # internal modes come behind the nodes of the body
-            sizes[len(own) - 1] += self.point.body.reduced.modes
+        places, modes = self.carried
+        if places:      # internal modes come behind the nodes of the body
+            sizes[places - 1] += modes
         return [0, *accumulate(sizes)][:len(sizes)]
+
+    @property
+    def carried(self) -> tuple[int, int]:
+        """How many of the first attachments are those of a body, and its internal modes."""
+        if self.path is not None:
+            return len(self.path.here.attachments), self.path.here.modes
+        if self.point is not None:
+            return len(self.point.body.attachments), self.point.body.reduced.modes
+        return 0, 0
+
+    @property
+    def width(self) -> int:
+        """Unknowns of an element whose first ones are those of a body, with its multipliers."""
+        return self.firsts[-1] + self.dof_blocks[-1].start.size + self.equations.multipliers
+
+    @property
+    def equations(self) -> "Element":
+        """The element whose multipliers it acts with: itself, or the one that it adds to."""
+        return self if self.shares is None else self.shares
 
     @property
     def direction(self) -> NDArray:

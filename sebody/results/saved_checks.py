@@ -209,8 +209,8 @@ def _width(one: Any) -> int:
         return len(one.reduced.stiffness)
     if one.body is not None:
         return len(one.body.reduced.stiffness)
-    if one.point is not None:
-        return one.firsts[-1] + one.dof_blocks[-1].start.size
+    if any(one.carried):
+        return one.width
     modes = 0 if one.law is None else len(one.law.modes)
     read = 0 if one.pressed_by is None else one.pressed_by.multipliers
     return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + read + (

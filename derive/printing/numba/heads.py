@@ -10,6 +10,7 @@ from sebody.derive.kernels.body_contact import BodyContact
 from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.motion import FrameMotion
+from sebody.derive.kernels.path import BodyPath
 from sebody.derive.kernels.superelement import Superelement
 from sebody.derive.printing.lines import INDENT, filled
 from sebody.derive.printing.numba.files import Head, counts, operations
@@ -82,6 +83,27 @@ def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
          f"CONSTANTS = FRAME_CONSTANTS + {table(parts)}", "MULTIPLIERS = 0", "READS = 0",
          *memory(name for name, _ in law.memory),
          *OF_LOADS,
+         f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
+        ("FRAME_CONSTANTS",), (PART,))
+
+
+def path_head(given: BodyPath, kernel: Kernel) -> Head:
+    """Of a point on a path of a body: any layout, one frame."""
+    planar = given.layout.planar
+    return Head(
+        "Element kernel: a point stays on a path of a body, at a way that is an unknown",
+        (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
+         "modes.", f"Frame: {given.option.traits.summary}."),
+        (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
+         "WAY = True         # behind those of the body: a position, a way, multipliers",
+         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}",
+         f"MULTIPLIERS = {2 if planar else 3}",
+         "VECTOR = True        # the equations are components of one vector", "READS = 0",
+         *memory(f"tangent_{axis}" for axis in "xyz"[:2 if planar else 3]),
+         "WIDTH = None            # any number",
+         "INERTIAL = False        # has kinetic energy",
+         "POWER = False        # does work on the system: a load, damper or drive",
+         "DRIVEN = False        # a constraint that depends on time",
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         ("FRAME_CONSTANTS",), (PART,))
 

@@ -77,6 +77,7 @@ class Case(NamedTuple):
     resultants: int = 0         # and stress resultants of second order
     damped: bool = False        # whether the constants of options C and D have its damping
     series: int = 0             # of a load on a body: columns of a series
+    path: int = 0               # of a point on a path: numbers of the path
 
     @property
     def planar(self) -> bool:
@@ -110,7 +111,11 @@ class Case(NamedTuple):
 
     @property
     def own(self) -> int:
-        """Unknowns of the body; behind them are those of a node that carries a surface."""
+        """Unknowns of the body; behind them are those of a node that carries a surface, or a point
+        on a path with its way and multipliers.
+        """
+        if hasattr(self.module, "WAY"):
+            return self.n - 2 * self.dimension - 1
         return self.n - (self.dimension + (1 if self.planar else 3)) * self.carriers
 
     @property
@@ -128,7 +133,7 @@ class Case(NamedTuple):
                 self.n_positions, self.n_rotations, self.planar) | floating_counts(
                 self.planar, self.n, self.slaved, self.resultants, self.damped)
         return counts | rigid_part_counts(self.planar, self.n, self.damped) | {
-            "series": self.series}
+            "series": self.series, "path": self.path}
 
     @property
     def row(self) -> Row:
@@ -214,7 +219,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
     """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
-    if case.carriers or not hasattr(case.module, "FRAME"):  # a joint, rigid body, load or contact
+    if case.own < case.n or not hasattr(case.module, "FRAME"):      # no superelement
         return J
     turn, d = np.eye(len(J)), case.dimension
     R0 = frame.reshape(3, 3)[:d, :d]

@@ -1,0 +1,44 @@
+"""Kernels of points on paths of bodies: one for each frame, for any layout."""
+
+from typing import NamedTuple
+
+from sebody.contract.layout import FRAME_CONSTANTS, Part
+from sebody.contract.names import path_kind
+from sebody.derive.formulas.frames.frame import FrameOption
+from sebody.derive.formulas.path import PATH, Steps, body_path
+from sebody.derive.kernels.body_contact import BODY_CONTACTS
+from sebody.derive.kernels.layouts import Layout
+from sebody.derive.kernels.options import FRAMES
+from sebody.derive.kernels.superelement import opaque_names
+from sebody.derive.passes.lower import Names
+
+# of the frames that points inside bodies have: others turn with a body only nearly
+PATHS = {path_kind(name, planar): (name, planar) for name, planar in BODY_CONTACTS.values()}
+
+
+class BodyPath(NamedTuple):
+    """Description of a kernel: what is printed."""
+
+    name: str
+    layout: Layout
+    frame: str
+    option: FrameOption
+    names: Names
+    steps: Steps
+
+    @property
+    def declared(self) -> tuple[Part, ...]:
+        """Constants beyond those of every frame."""
+        return (*self.option.traits.constants, PATH)
+
+    @property
+    def constants(self) -> tuple[Part, ...]:
+        """The row of constants; the path comes last, since its length differs."""
+        return FRAME_CONSTANTS + self.declared
+
+
+def path_kernel(name: str) -> BodyPath:
+    """Derive the kernel of a name."""
+    frame, planar = PATHS[name]
+    steps = body_path(planar, FRAMES[frame])
+    return BodyPath(name, Layout(None, planar), frame, FRAMES[frame], opaque_names(steps.q), steps)

@@ -1,0 +1,175 @@
+"""Places on the path of a body: cubics of the recovery's rows in the way, and their derivatives.
+
+The numbers of a path are a row of constants, see `sebody.model.path_tables`:
+
+    knots K, followers m, offset of the way, four edges of the weight, first and last way allowed,
+    K ways of the knots, ascending,
+    of every knot the rows ``X, Phi_y, Phi_eta`` and their slopes, D numbers each,
+    m symmetric matrices Q_b, (n, n)
+
+The point in the frame of the body is ``r = X + Phi_y y + Phi_eta eta`` with the followers
+``eta_b = y . Q_b y / 2``. Beyond the ends the path is straight. The weight rises from 0 to 1
+between the first two edges and falls between the last two, twice differentiable, or at once where
+two edges are the same.
+"""
+
+from sebody.compiler.decorators import compiled
+from sebody.contract.layout import OFF_PATH, OK
+
+HEAD = 9            # numbers before the knots
+# places in the head, what `path_place` finds: the point r and its derivatives by the way, the weight
+# of the body and its derivatives; then the weights of four numbers in a cubic and its derivatives
+ARM, SLOPE, BEND, WEIGHT, CUBIC = 0, 3, 6, 9, 12
+
+
+@compiled
+def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
+    """Point of a path at a way in the frame of the body, and how it moves.
+
+    Parameters
+    ----------
+    path : the row of numbers
+    s : float
+        The way along the whole path.
+    y : (n,)
+        Local coordinates of the body.
+    head : written
+    shapes, slopes : written, (n, D)
+        Derivatives of r by the coordinates, and derivatives of these by the way.
+    bends : written, (m, D)
+        Rows Phi_eta of the followers.
+
+    Returns
+    -------
+    int
+        OK, or OFF_PATH of a way that is not allowed.
+    """
+    if s < path[7] or s > path[8]:
+        return OFF_PATH
+    knots, followers, way = int(path[0]), int(path[1]), s - path[2]
+    _set_weight(path, way, head)
+    k = _interval(path, way)
+    _set_cubics(path, way, k, head)
+    size = dimension * (1 + n + followers)
+    first = HEAD + knots + 2 * size * k
+    for c in range(dimension):
+        head[ARM + c] = _row(path, first + c, size, head, 0)
+        head[SLOPE + c] = _row(path, first + c, size, head, 1)
+        head[BEND + c] = _row(path, first + c, size, head, 2)
+    for k in range(n):
+        _add(path, first + dimension * (1 + k), size, dimension, y[k], head)
+        for c in range(dimension):
+            at = first + dimension * (1 + k) + c
+            shapes[dimension * k + c] = _row(path, at, size, head, 0)
+            slopes[dimension * k + c] = _row(path, at, size, head, 1)
+    for b in range(followers):
+        at, eta = first + dimension * (1 + n + b), 0.0
+        for c in range(dimension):
+            bends[dimension * b + c] = _row(path, at + c, size, head, 0)
+        for k in range(n):
+            moved = _followed(path, b, k, y, n, size)
+            eta += 0.5 * moved * y[k]
+            for c in range(dimension):
+                shapes[dimension * k + c] += bends[dimension * b + c] * moved
+                slopes[dimension * k + c] += _row(path, at + c, size, head, 1) * moved
+        _add(path, at, size, dimension, eta, head)
+    return OK
+
+
+@compiled
+def path_change(path, bends, dy, n, dimension, changes):
+    """Changes of the shapes of `path_place` as coordinates change, through the followers."""
+    followers = int(path[1])
+    size = dimension * (1 + n + followers)
+    for k in range(n * dimension):
+        changes[k] = 0.0
+    for b in range(followers):
+        for k in range(n):
+            moved = _followed(path, b, k, dy, n, size)
+            for c in range(dimension):
+                changes[dimension * k + c] += bends[dimension * b + c] * moved
+
+
+@compiled
+def _interval(path, way):
+    """Number of the interval between knots that a way is in, beyond the ends of the outer one."""
+    low, high = 0, int(path[0]) - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if path[HEAD + middle] <= way:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@compiled
+def _set_cubics(path, way, k, head):
+    """Weights of value and slope at both knots of an interval: of the place and its derivatives."""
+    h = path[HEAD + k + 1] - path[HEAD + k]
+    u = (way - path[HEAD + k]) / h
+    for i in range(12):
+        head[CUBIC + i] = 0.0
+    if u < 0.0:
+        head[CUBIC], head[CUBIC + 1], head[CUBIC + 5] = 1.0, u * h, 1.0
+        return
+    w = 1.0 - u
+    if w < 0.0:
+        head[CUBIC + 2], head[CUBIC + 3], head[CUBIC + 7] = 1.0, -w * h, 1.0
+        return
+    head[CUBIC], head[CUBIC + 1] = w * w * (1.0 + 2.0 * u), u * w * w * h
+    head[CUBIC + 2], head[CUBIC + 3] = u * u * (3.0 - 2.0 * u), -u * u * w * h
+    head[CUBIC + 4], head[CUBIC + 5] = -6.0 * u * w / h, w * (1.0 - 3.0 * u)
+    head[CUBIC + 6], head[CUBIC + 7] = 6.0 * u * w / h, u * (3.0 * u - 2.0)
+    head[CUBIC + 8], head[CUBIC + 9] = (12.0 * u - 6.0) / (h * h), (6.0 * u - 4.0) / h
+    head[CUBIC + 10], head[CUBIC + 11] = (6.0 - 12.0 * u) / (h * h), (6.0 * u - 2.0) / h
+
+
+@compiled
+def _row(path, at, size, head, derivative):
+    """One number of the rows at the way, or a derivative of it."""
+    first = CUBIC + 4 * derivative
+    return (head[first] * path[at] + head[first + 1] * path[at + size]
+            + head[first + 2] * path[at + 2 * size] + head[first + 3] * path[at + 3 * size])
+
+
+@compiled
+def _add(path, at, size, dimension, factor, head):
+    """Add the displacement by a coordinate to the point and its derivatives."""
+    for c in range(dimension):
+        head[ARM + c] += factor * _row(path, at + c, size, head, 0)
+        head[SLOPE + c] += factor * _row(path, at + c, size, head, 1)
+        head[BEND + c] += factor * _row(path, at + c, size, head, 2)
+
+
+@compiled
+def _followed(path, b, k, y, n, size):
+    """Row k of ``Q_b y``."""
+    knots, total = int(path[0]), 0.0
+    first = HEAD + knots + 2 * size * knots + (b * n + k) * n
+    for i in range(n):
+        total += path[first + i] * y[i]
+    return total
+
+
+@compiled
+def _set_weight(path, way, head):
+    """Weight of the body at a way, and its two derivatives."""
+    head[WEIGHT], head[WEIGHT + 1], head[WEIGHT + 2] = 1.0, 0.0, 0.0
+    for side in range(2):
+        first, length = path[3 + 2 * side], path[4 + 2 * side] - path[3 + 2 * side]
+        if length > 0.0:
+            u = min(max((way - first) / length, 0.0), 1.0)
+            value = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+            slope = 30.0 * u * u * (1.0 - u) * (1.0 - u) / length
+            bend = 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / (length * length)
+        else:
+            value, slope, bend = 0.0, 0.0, 0.0
+            if way >= first:
+                value = 1.0
+        if side == 1:
+            value, slope, bend = 1.0 - value, -slope, -bend
+        one, rate, second = head[WEIGHT], head[WEIGHT + 1], head[WEIGHT + 2]
+        head[WEIGHT] = one * value
+        head[WEIGHT + 1] = rate * value + one * slope
+        head[WEIGHT + 2] = second * value + 2.0 * rate * slope + one * bend

@@ -1,0 +1,215 @@
+"""Joints that slide along paths."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.contract.names import path_kind
+from sebody.model import motions
+from sebody.model.arguments import chosen_name, dof_block, known, known_joint
+from sebody.model.extent import extent
+from sebody.model.frames import FRAMES
+from sebody.model.histories import Source
+from sebody.model.joint_equations import named
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import (
+    Attachment,
+    DofBlock,
+    Element,
+    Joint,
+    Motion,
+    Node,
+    OnPath,
+    Path,
+    positions,
+)
+from sebody.model.path_tables import curve
+from sebody.model.paths import known_path
+
+PATH = "path"       # kind of these joints
+OFF = 1e-6          # of the size of the model: by which a node may be off its path
+SAMPLES = 8         # places in each interval between knots from which the nearest one is looked for
+
+
+def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: float | None = None,
+               rate: float | None = None, name: str | None = None) -> Joint:
+    """Point that stays on a path: `node` slides along flexible bodies, and turns freely.
+
+    How far along the path it is, its way, is an unknown of its own, so the force on `node` is
+    normal to the deformed path unless something acts along it. For a straight line that is fixed
+    in a node use `slider`, which has no unknown and no path; for a carriage that slides in a rigid
+    guide and does not turn `prismatic`, with `drive_slide` for its motion.
+
+    Parameters
+    ----------
+    node : Node or str
+        A node that is not one of the path's own bodies; on the path at the start.
+    path : Path or str
+        Of `path`.
+    start : float, optional
+        The way at the start [length]; by default that of the nearest place. Give it where the path
+        comes by the same place twice.
+    rate : float, optional
+        Rate of the way at the start [length/time]; by default it follows from the velocities.
+    name : str, optional
+        Of its results, ``<name>.way``, ``<name>.rate``, ``<name>.force`` on the node and the like;
+        by default ``path at <node>``.
+
+    Raises
+    ------
+    InputError
+        A node off the path or of one of its bodies, a path of another model, or a start beyond its
+        ends.
+
+    Examples
+    --------
+    >>> runs = model.path_joint("trolley", rail, name="runs")
+    """
+    a = known(model, node)
+    what = f"path joint at {a.name!r}"
+    on = known_path(model, path, what)
+    dof_block(a, "position")
+    for piece in on.pieces:
+        if isinstance(piece.carrier, Node):
+            if a is piece.carrier or a.position is piece.carrier.position:
+                raise InputError(f"{what}: the node carries path {on.name!r} itself: give another "
+                                 "one")
+        elif any(a.position is t for t in piece.carrier.positions):
+            raise InputError(f"{what}: the node is one of superelement {piece.carrier.name!r}, "
+                             f"which path {on.name!r} goes along: give a node of its own at this "
+                             "place")
+    begins = _start(model, what, a, on, start)
+    name = named(model, name, PATH, a)
+    way = DofBlock(f"{name}.way", np.array([begins]), np.zeros(1))
+    if rate is not None:
+        way.rate, way.given = np.array([inputs.number(rate, f"{what}: rate")]), True
+    hidden = Node(way.name, np.zeros(0), way, None)     # in no table of the model
+    equations: list[Element] = []
+    for k, piece in enumerate(on.pieces):
+        carrier = piece.carrier
+        frame = "converged_mean" if isinstance(carrier, Node) else FRAMES[carrier.frame].kernel
+        equations.append(Element(
+            name, path_kind(frame, model.planar),
+            piece.attachments + positions(a) + (Attachment(hidden, "position"),), {},
+            0 if equations else model.dimension, path=OnPath(on, k, way),
+            shares=equations[0] if equations else None))
+    carrier = on.pieces[0].carrier
+    to = carrier if isinstance(carrier, Node) else carrier.nodes[carrier.reduced.position_nodes[0]]
+    joint = Joint(name, tuple(equations), a, to, None, PATH)
+    model.joints.append(joint)
+    return joint
+
+
+def drive_way(model: Mechanism, joint: Joint | str, motion: Source, name: str | None = None
+              ) -> Motion:
+    """Prescribe the way of a path joint along its path: no unknown, no equation.
+
+    Parameters
+    ----------
+    joint : Joint or str
+        Of `path_joint`.
+    motion : table, function, tuple of three functions or ready profile
+        Counted from where the joint starts [length]; see `drive_angle`.
+    name : str, optional
+        Of its results, ``<name>.thrust``, ``<name>.power`` and ``<name>.work``.
+
+    Raises
+    ------
+    InputError
+        Another kind of joint, or one that is driven already.
+    """
+    driven = known_joint(model, joint, "drive of the way")
+    way = way_of(driven, "drive_way")
+    if way.fixed:
+        raise InputError(f"drive_way: joint {driven.name!r} is driven already: leave one drive out")
+    time_function = motions.motion(motion)
+    name = chosen_name(model, name, f"drive of {driven.name}")
+    place = driven.constraints[0].attachments[-1]
+    way.fixed = True
+    way.motions.append(Motion(name, np.ones(1), time_function, place))
+    return way.motions[-1]
+
+
+def way_of(joint: Joint, what: str) -> DofBlock:
+    """The way of a path joint.
+
+    Raises
+    ------
+    InputError
+        Another kind of joint.
+    """
+    if joint.kind != PATH:
+        raise InputError(f"{what}: joint {joint.name!r} is a {joint.kind}, which has no way along "
+                         "a path: give a joint of path_joint")
+    assert joint.constraints[0].path is not None
+    return joint.constraints[0].path.way
+
+
+def _start(model: Mechanism, what: str, a: Node, path: Path, start: float | None) -> float:
+    """The way at which a node is on a path.
+
+    Raises
+    ------
+    InputError
+        It is off the path, by how much and where the nearest place is.
+    """
+    if start is None:
+        way = _nearest(path, a.point)
+    else:
+        way = inputs.number(start, f"{what}: start")
+        for end, beyond in zip(path.ends, (way < 0, way > path.length), strict=True):
+            if beyond and end == "refuse":
+                raise InputError(f"{what}: start is {way:g}, beyond the ends of path "
+                                 f"{path.name!r}, 0 and {path.length:g}: give a way between them, "
+                                 "or make the path with ends='straight'")
+    there = place_at(path, way)
+    apart = float(np.linalg.norm(a.point - there))
+    if apart > OFF * max(extent(model), path.length):
+        where = ", ".join(f"{x:.9g}" for x in there)
+        found = "the nearest place on it" if start is None else f"its place at start={way:g}"
+        raise InputError(f"{what}: the node is {apart:.3g} away from path {path.name!r}: {found} "
+                         f"is ({where}), put the node there")
+    return way
+
+
+def place_at(path: Path, way: float) -> NDArray:
+    """The place on a path at the start, global axes; straight on beyond its ends."""
+    k = max(sum(way >= piece.offset for piece in path.pieces) - 1, 0)
+    piece, of = path.pieces[k], curve(path, k)
+    local = way - piece.offset
+    inside = float(np.clip(local, 0.0, piece.ways[-1]))
+    place: NDArray = of(inside) + (local - inside) * of(inside, 1)
+    return place
+
+
+def _nearest(path: Path, point: NDArray) -> float:
+    """The way of the place on a path that is nearest to a point."""
+    found = []
+    for k, piece in enumerate(path.pieces):
+        of = curve(path, k)
+        ways = np.unique(np.concatenate([np.linspace(one, other, SAMPLES + 1) for one, other in zip(
+            piece.ways, piece.ways[1:], strict=False)]))
+        i = int(np.argmin(np.linalg.norm(of(ways) - point, axis=1)))
+        low, high = ways[max(i - 1, 0)], ways[min(i + 1, len(ways) - 1)]
+
+        def square(way: float, of=of) -> float:
+            return float(np.sum((of(way) - point)**2))
+        best = minimize_scalar(square, bounds=(low, high), method="bounded",
+                               options={"xatol": 1e-9 * (high - low)})
+        local = _polished(of, float(best.x), point, low, high)
+        found.append((square(local), local + piece.offset))
+        found += [(square(end), end + piece.offset) for end in (0.0, float(piece.ways[-1]))]
+    return float(min(found)[1])
+
+
+def _polished(of, way: float, point: NDArray, low: float, high: float) -> float:
+    """A way where the path is normal to the line to a point, from one nearby: Newton's steps."""
+    for _ in range(4):
+        gap, slope, bend = of(way) - point, of(way, 1), of(way, 2)
+        change = -(gap @ slope) / max(slope @ slope + gap @ bend, 1e-300)
+        way = float(np.clip(way + change, low, high))
+    return way

@@ -1,0 +1,106 @@
+"""The numbers of paths as kernels read them: rows of the recovery, splined in the way."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+from sebody.model.body_points import held_points
+from sebody.model.parts import Node, Path, PathPiece, Superelement
+from sebody.reduction.recovery import Recovery
+
+NO_EDGE = 1e300         # of the weight of the first and the last body, and of straight ends
+MARGIN = 1e-6           # of the length: by which iterates may pass an end
+
+
+class Rows(NamedTuple):
+    """Values at the knots and slopes there, (K, 1 + N, D): of X, then of each coordinate."""
+
+    values: NDArray
+    slopes: NDArray
+    followers: NDArray      # matrices Q_b, (m, n, n)
+
+
+def path_numbers(path: Path, k: int) -> NDArray:
+    """The row of constants of piece k of a path, see `sebody.kernels.paths`."""
+    piece, rows = path.pieces[k], rows_of(path.pieces[k])
+    half, length = path.blend / 2, piece.ways[-1]
+    first = (-half, half) if k else (-NO_EDGE, -NO_EDGE)
+    last = ((length - half, length + half) if k < len(path.pieces) - 1 else
+            (NO_EDGE, NO_EDGE))
+    low, high = (-MARGIN * path.length if path.ends[0] == "refuse" else -NO_EDGE,
+                 (1 + MARGIN) * path.length if path.ends[1] == "refuse" else NO_EDGE)
+    both = np.stack([rows.values, rows.slopes], axis=1)
+    return np.concatenate([[len(piece.ways), len(rows.followers), piece.offset], first, last,
+                           [low, high], piece.ways, both.ravel(), rows.followers.ravel()])
+
+
+def rows_of(piece: PathPiece) -> Rows:
+    """Rows of a piece in axes of its body or node, twice differentiable in the way."""
+    if isinstance(piece.carrier, Node):
+        X = piece.points - piece.carrier.point
+        n = piece.carrier_width
+        shape = np.zeros((len(X), n, X.shape[1]))
+        values = np.concatenate([X[:, None], shape], axis=1)
+        return Rows(values, _slopes(piece.ways, values, None), np.zeros((0, n, n)))
+    body = piece.carrier
+    recovery = recovery_of(body)
+    places, n = list(piece.places), len(body.reduced.stiffness)
+    followers = followers_of(body)
+    z = np.eye(n + len(followers))
+    Phi = recovery.displacement(z, places).transpose(1, 0, 2)
+    X = recovery.points[places] - body.alpha @ held_points(body)
+    values = np.concatenate([X[:, None], Phi], axis=1)
+    turned = recovery.rotation(z, places).transpose(1, 0, 2)
+    along = _slopes(piece.ways, X[:, None], None)[:, 0]
+    return Rows(values, _slopes(piece.ways, values, _ends(along, turned)), followers)
+
+
+def recovery_of(body: Superelement) -> Recovery:
+    """Its recovery, which bodies of paths have."""
+    assert body.reduced.recovery is not None
+    return body.reduced.recovery
+
+
+def followers_of(body: Superelement) -> NDArray:
+    """Matrices Q_b of the coordinates that follow in second order, (m, n, n)."""
+    n, invariants = len(body.reduced.stiffness), body.invariants
+    if invariants is None or recovery_of(body).shapes.shape[1] < n + invariants.slaved:
+        return np.zeros((0, n, n))
+    return invariants.Q
+
+
+def _ends(along: NDArray, turned: NDArray) -> NDArray | None:
+    """Slopes of displacements at all knots by rotations of the FE nodes, (K, N, D); if they turn.
+    """
+    if turned.shape[2] == 0:
+        return None
+    if turned.shape[2] == 1:
+        return turned * np.stack([-along[:, 1], along[:, 0]], axis=1)[:, None]
+    return np.cross(turned, along[:, None])
+
+
+def _slopes(ways: NDArray, values: NDArray, turned: NDArray | None) -> NDArray:
+    """Slopes at the knots of a cubic spline, (K, 1 + N, D).
+
+    Its ends turn as FE nodes do, where these have rotations. Two knots have no more than these;
+    without rotations they are a straight line.
+    """
+    if len(ways) == 2 and turned is None:
+        return np.repeat((np.diff(values, axis=0) / np.diff(ways)[:, None, None]), 2, axis=0)
+    slopes = (np.repeat(np.diff(values, axis=0) / (ways[-1] - ways[0]), 2, axis=0)
+              if len(ways) == 2 else CubicSpline(ways, values)(ways, 1))
+    if turned is not None:
+        slopes[:, 1:] = turned if len(ways) == 2 else CubicSpline(
+            ways, values[:, 1:], bc_type=((1, turned[0]), (1, turned[-1])))(ways, 1)
+    return slopes
+
+
+def curve(path: Path, k: int) -> CubicHermiteSpline:
+    """A piece of a path where it is at the start, in global axes, by the way along this piece."""
+    piece, rows = path.pieces[k], rows_of(path.pieces[k])
+    shift = piece.points[0] - rows.values[0, 0]
+    return CubicHermiteSpline(piece.ways, rows.values[:, 0] + shift, rows.slopes[:, 0])

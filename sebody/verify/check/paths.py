@@ -1,0 +1,125 @@
+"""Criteria of points on paths of bodies: those of joints, where the path is, and the balance.
+
+The path is placed a second time by splines and rotations of SciPy, from the definition of the
+body's frame. In the first state the body has all of the path, in the second a part of it.
+"""
+
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial.transform import Rotation
+
+from sebody.contract.layout import AT_FRAME, FRAME_CONSTANTS, RESIDUAL
+from sebody.kernels.paths import HEAD
+from sebody.verify.check.definitions import frame_rotation, local_coordinates
+from sebody.verify.check.elements import (
+    element_tangent,
+    joint_acceleration,
+    joint_force,
+    joint_velocity,
+)
+from sebody.verify.check.states import (
+    LIMIT,
+    STATES,
+    Case,
+    CheckRow,
+    constants_of,
+    difference,
+    evaluate,
+    index_row,
+    with_constants,
+)
+from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
+
+KNOTS = np.array([0.0, 2.1, 4.3, 6.2])
+WAY, OFFSET = 8.3, 5.0      # in the second interval
+BLENDED = (-9.0, -9.0, 99.0, 99.0), (2.0, 5.5, 1.5, 8.0)    # edges of the weight
+FOLLOWERS = 2
+KINDS = 3       # of nodes, of those that general kernels are checked with
+
+
+def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
+    """A generic state of a body and, behind it, of a point, the way, and multipliers."""
+    body, values, random = placed_case(module, seed, nodes=nodes)
+    d, n = body.dimension, body.n
+    size, behind = d * (1 + n + FOLLOWERS), 2 * d + 1
+    rows = 0.5 * random.normal(size=(len(KNOTS), 2, size))
+    Q = 0.3 * random.normal(size=(FOLLOWERS, n, n))
+    path = np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -99.0, 99.0, KNOTS, rows.ravel(),
+                 (Q + Q.transpose(0, 2, 1)).ravel()]
+    q, v, a = (np.r_[own, random.normal(size=behind)] for own in (body.q, body.v, body.a))
+    q[n + d] = WAY
+    index = np.r_[index_row(len(q), nodes.positions, nodes.rotations), 0]
+    index[AT_FRAME], kept = len(body.frames), np.zeros(d)
+    case = Case(module, len(q), index, np.zeros(0), q, body.R, v, a,
+                np.r_[body.reference, kept], np.r_[body.frames, kept], path=len(path))
+    return with_constants(case, {part.name: values.get(part.name, path)
+                                 for part in module.CONSTANTS})
+
+
+def _body(case: Case) -> Case:
+    """The body alone, as the definitions of frames read it."""
+    parts = tuple(p for p in case.module.CONSTANTS if p in FRAME_CONSTANTS or p.name == "Gam")
+    module = SimpleNamespace(FRAME=case.module.FRAME, PLANAR=case.planar, CONSTANTS=parts,
+                             __name__="body")
+    index = index_row(case.own, case.n_positions, case.n_rotations)
+    made = Case(module, case.own, index, np.zeros(0), case.q[:case.own], case.R,
+                case.v[:case.own], case.a[:case.own], case.reference[:9], case.frames[:9])
+    constants = constants_of(case)
+    return with_constants(made, {part.name: constants[part.name] for part in parts})
+
+
+def _place(case: Case) -> NDArray:
+    """The place on the path, by splines and rotations of SciPy."""
+    body, constants, d, n = _body(case), constants_of(case), case.dimension, case.own
+    path = constants["path"]
+    rows = path[HEAD + len(KNOTS):][:2 * len(KNOTS) * d * (1 + n + FOLLOWERS)].reshape(
+        len(KNOTS), 2, 1 + n + FOLLOWERS, d)
+    here = CubicHermiteSpline(KNOTS, rows[:, 0], rows[:, 1])(case.q[n + d] - OFFSET)
+    y = local_coordinates(body)
+    Q = path[len(path) - FOLLOWERS * n * n:].reshape(FOLLOWERS, n, n)
+    z = np.r_[1.0, y, np.einsum("i,bij,j->b", y, Q, y) / 2]
+    origin = constants["alphas"] @ body.q[:body.first_rotation].reshape(-1, d)
+    return origin + frame_rotation(body).as_matrix()[:d, :d] @ (z @ here)
+
+
+def place(case: Case) -> float:
+    """The equations against the definition; their weight is that of the force on the point."""
+    d, n = case.dimension, case.own
+    forces, lam = evaluate(case, RESIDUAL)[0], case.q[-case.dimension:]
+    weight = forces[n] / lam[0]
+    if np.ptp(case.constants[-case.path:][3:5]) > 0:
+        assert 0.01 < weight < 0.99
+    return difference(forces[-d:], weight * (case.q[n:n + d] - _place(case)))
+
+
+def balance(case: Case) -> float:
+    """Forces on body and point add up to zero, and so do their moments, where the gap is closed."""
+    d, n = case.dimension, case.own
+    case = case._replace(q=np.r_[case.q[:n], _place(case), case.q[n + d:]])
+    forces = evaluate(case, RESIDUAL)[0]
+    total, moment = np.zeros(3), np.zeros(3)
+    for at in (*range(0, case.first_rotation, d), n):
+        x, f = (np.r_[values[at:at + d], np.zeros(3 - d)] for values in (case.q, forces))
+        total, moment = total + f, moment + np.cross(x, f)
+    if case.planar:
+        moment[2] += forces[case.first_rotation:case.first_mode].sum()
+    for j, at in enumerate(case.rotations):
+        moment += Rotation.from_matrix(case.R[9 * j:9 * j + 9].reshape(3, 3)).apply(
+            forces[at:at + 3])
+    return float(np.abs(np.r_[total, moment]).max() / np.abs(forces).max())
+
+
+CRITERIA = {"tangent": element_tangent, "force = gradient of lambda.phi": joint_force,
+            "velocity": joint_velocity, "acceleration": joint_acceleration,
+            "place on the path": place, "forces in balance": balance}
+
+
+def check_body_path(name: str, module: ModuleType) -> list[CheckRow]:
+    """All criteria, with some numbers of nodes and modes."""
+    return [CheckRow(name, criterion, seed, measure(body_path_case(module, seed, nodes)), None,
+                     LIMIT, nodes)
+            for nodes in nodes_of(module)[:KINDS] for seed in range(STATES)
+            for criterion, measure in CRITERIA.items()]
