@@ -244,7 +244,8 @@ def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
     path = path_numbers(element.path.path, element.path.piece)
     if isinstance(carrier, Node):
         planar = len(carrier.point) == 2
-        counts = axes_of(planar) | superelement_counts(1, 1, planar, element.path.here.carrier_width)
+        width = element.path.here.carrier_width
+        counts = axes_of(planar) | superelement_counts(1, 1, planar, width)
         values: dict[str, ArrayLike] = {"alphas": [1.0], "fits": [1.0], "alpha_rs": [1.0],
                                         "X": np.zeros((1, len(carrier.point)))}
     else:

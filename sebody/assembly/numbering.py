@@ -35,8 +35,12 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
 
 def placed(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+
+    Ways along paths count as positions.
     """
     flags = np.zeros(numbering.total, dtype=bool)
+    for way in model.ways():
+        flags[coordinates(numbering, way)] = True
     for node in model.nodes.values():
         for dof_block in (node.position, node.rotation):
             if dof_block is not None and dof_block in numbering.dof_blocks:

@@ -29,6 +29,7 @@ from sebody.export.settings import settings
 from sebody.kernels.loader import element_kernel_name
 from sebody.model.control_order import sampled
 from sebody.model.model import Model
+from sebody.model.path_joints import PATH
 from sebody.quantities.reading import Reading
 from sebody.results.result import Result
 from sebody.results.units import unit
@@ -83,6 +84,7 @@ class Prepared:
         self.identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
         if not self.identifier[0].isalpha():
             self.identifier = f"model_{self.identifier}"
+        _refuse_paths(model)
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
         evaluate_alone(made, self.run.system)       # others need this machine's vectors
@@ -184,3 +186,10 @@ def _with_spare_corner(system: System) -> System:
     return replace(system, corners=np.append(system.corners, np.inf),
                    jumps=np.append(system.jumps, 1))
 
+
+def _refuse_paths(model: Model) -> None:
+    """Refuse joints on paths, which are looked up by functions that exports do not have."""
+    for joint in model.joints:
+        if joint.kind == PATH:
+            raise InputError(f"joint {joint.name!r} is on a path, which is not exported: leave the "
+                             "joint out, or simulate the model in Python")

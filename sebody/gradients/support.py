@@ -9,6 +9,7 @@ from sebody.gradients.linear import DENSE
 from sebody.kernels.loader import element_kernel_name, products_kernel_name
 from sebody.model.frames import FRAMES
 from sebody.model.model import Model
+from sebody.model.path_joints import PATH
 from sebody.runs.simulation import Simulation
 
 USER_FORCE = "user_force"
@@ -20,7 +21,8 @@ def refuse_model(model: Model) -> None:
     Raises
     ------
     InputError
-        Incremental frames, sampled controllers, or functions of the user without derivatives.
+        Joints on paths, incremental frames, sampled controllers, or functions of the user without
+        derivatives.
     """
     for name, one in model.controllers.items():
         if one.period:
@@ -32,6 +34,10 @@ def refuse_model(model: Model) -> None:
             raise InputError(f"the law of controller {load.law.controller!r} is a function without "
                              "derivatives: give derivatives= with it, or use an Ensemble with "
                              "values on both sides")
+    for joint in model.joints:
+        if joint.kind == PATH:
+            raise InputError(f"joint {joint.name!r} is on a path, which is not differentiated: use "
+                             "an Ensemble with values on both sides")
     for body in model.bodies.values():
         if FRAMES[body.frame].traits.incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()

@@ -17,8 +17,8 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OFF_PATH, OK
 
 HEAD = 9            # numbers before the knots
-# places in the head, what `path_place` finds: the point r and its derivatives by the way, the weight
-# of the body and its derivatives; then the weights of four numbers in a cubic and its derivatives
+# places in the head, what `path_place` finds: the point r and its derivatives by the way, the
+# weight of the body and its derivatives; then the weights of four numbers in a cubic, likewise
 ARM, SLOPE, BEND, WEIGHT, CUBIC = 0, 3, 6, 9, 12
 
 

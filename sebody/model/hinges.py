@@ -176,7 +176,7 @@ def _between(model: Mechanism, kind: str) -> dict[frozenset, list[Joint]]:
     """Joints by what they are between."""
     found: dict[frozenset, list[Joint]] = {}
     for joint in model.joints:
-        if joint.kind not in ("drive", "distance") and all(
+        if joint.kind not in ("drive", "distance", "path") and all(
                 getattr(node, kind) is not None for node in (joint.node, joint.to)):
             found.setdefault(_key(joint.node, joint.to, kind), []).append(joint)
     return found

@@ -172,7 +172,7 @@ class PathPiece(NamedTuple):
     """What a path has on one body, or a curve that is fixed on a node."""
 
     carrier: Superelement | Node
-    places: tuple[int, ...]     # of its knots among the nodes of the body's recovery; none of a node
+    places: tuple[int, ...]     # of its knots in the recovery of the body; none of a node
     points: NDArray             # the knots at the start, global axes, (K, D) [length]
     ways: NDArray               # of the knots along this piece, from 0 [length]
     offset: float               # of the way along the whole path, where this piece begins

@@ -11,7 +11,7 @@ from sebody.model.shafts import is_unbalance
 from sebody.pictures.wireframe import neighbours
 
 SPRINGS = "spring", "planar_spring"
-SLIDING = "slider", "prismatic", "cylindrical", "planar"
+SLIDING = "slider", "prismatic", "cylindrical", "planar", "path"
 ABOUT_Z = np.eye(3)[:, [2, 0, 1]]       # axes whose first direction is z
 
 

@@ -74,19 +74,33 @@ class Balance:
         return total
 
     def axes(self, joint: Joint) -> Matrix:
-        """The matrix whose columns are the axes of a joint, in global axes."""
+        """The matrix whose columns are the axes of a joint, in global axes.
+
+        The first one is the axis of the joint, the line between the nodes of a distance, or the
+        tangent of a path.
+        """
         if joint.axes is not None:
             R = self._of.rotation(joint.axes.carrier.rotation)
             columns = [times(R, column) for column in joint.axes.columns.T.tolist()]
             return [list(row) for row in zip(*columns, strict=True)]
-        there, here = (self._of.part("q", node, "position") for node in (joint.to, joint.node))
-        first = _unit(minus(there, here))
+        first = _unit(self._tangent(joint) or minus(*(
+            self._of.part("q", node, "position") for node in (joint.to, joint.node))))
         if self._model.planar:
             return [[first[0], -first[1]], [first[1], first[0]]]
         small = [-(x * x) for x in first]       # across the axis of space that is furthest from it
         across = [cross(first, axis) for axis in np.eye(3).tolist()]
         second = _unit([choice(small, [one[i] for one in across]) for i in range(3)])
         return [list(row) for row in zip(first, second, cross(first, second), strict=True)]
+
+    def _tangent(self, joint: Joint) -> list[Number]:
+        """Tangent of the path that a joint is on, which its elements keep; empty of other joints.
+        """
+        total: list[Number] = []
+        for one in joint.constraints:
+            if one.path is not None:
+                own = [self._of.recorded("frames", k) for k in self._of.numbering.memories[one]]
+                total = plus(total, own) if total else own
+        return total
 
     def _size(self, kind: str) -> int:
         return self._model.dimension if kind == "position" else self._model.rotation_size

@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 from sebody.contract.layout import ENERGIES
 from sebody.model.numbering import record_counts
 from sebody.model.parts import SLIDES, TURNS
-from sebody.quantities import contacts, forces, inside, motion
+from sebody.quantities import contacts, forces, inside, motion, paths
 from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
 
 FE_NODE = "node inside a body"
-OPTIONAL = PRESSING, SIGNAL, CONTROLLER, OUTPUT = (     # told of models that have some
-    "contact, stop or friction", "sensor, signal or actuator", "controller", "output of a body")
+OPTIONAL = PRESSING, SLIDING, SIGNAL, CONTROLLER, OUTPUT = (    # told of models that have some
+    "contact, stop or friction", "joint on a path", "sensor, signal or actuator", "controller",
+    "output of a body")
 
 
 def _always(of: Parts, owner: str) -> bool:
@@ -175,6 +176,13 @@ JOINT = {
     "displacement": Quantity(motion.displacement, "length", partial(_is_a, SLIDES)),
     "speed": Quantity(motion.speed, has=partial(_is_a, SLIDES)),
 }
+PATH_JOINT = {
+    "way": Quantity(lambda of, owner: paths.way(of, owner, "q"), "length"),
+    "rate": Quantity(lambda of, owner: paths.way(of, owner, "v")),
+    "thrust": Quantity(paths.thrust, "force"),
+    "normal_force": Quantity(paths.normal_force),
+    "power": Quantity(paths.power, "force length/time"),
+}
 DRIVE = {
     "torque": Quantity(partial(_with, forces.effort, "torque"), "force length",
                        partial(_drives, "rotation")),
@@ -196,6 +204,7 @@ OWNERS = (
     Owner("node", "nodes are {names}", lambda of: of.model.nodes, NODE),
     Owner("body", "of bodies ({names}) there are {quantities}", forces.bodies, BODY),
     Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies, NODE_OF_BODY),
+    Owner(SLIDING, "of joints on paths {quantities}", paths.sliding, PATH_JOINT),
     Owner("joint", "of joints {quantities}", motion.joints, JOINT),
     Owner("drive", "of drives {quantities}", forces.drives, DRIVE),
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,

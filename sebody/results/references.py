@@ -22,7 +22,8 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Node, Superelement
 from sebody.results.recording import Recording
 
-NO_SUPPORT = "drive", "distance"        # joints that hold a position along one way alone
+APART = "distance", "path"              # joints whose nodes are not at one place
+NO_SUPPORT = "drive", *APART            # joints that hold no place of a body
 FRAME = "frame"         # in place of the name of a node: the floating frame of the body
 
 
@@ -103,7 +104,7 @@ def together(model: Mechanism) -> dict[str, Set]:
     union = _Union()
     nodes = [*model.nodes.values(), *model.grounds]
     for joint in model.joints:
-        if joint.kind != "distance":
+        if joint.kind not in APART:
             union.join(joint.node.name, joint.to.name)
     for one in model.connections:
         if one.kind == "position" and one.to is not None:

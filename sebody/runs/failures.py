@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from sebody.contract.layout import OFF_PATH
 from sebody.engine.state import (
     FINEST,
     GAP,
@@ -13,6 +14,7 @@ from sebody.engine.state import (
 from sebody.engine.system import System
 from sebody.model.model import Model
 from sebody.model.numbering import Numbering
+from sebody.model.path_joints import PATH, way_of
 from sebody.results.contact_states import states
 from sebody.runs import user_faults
 from sebody.runs.redundancy import contradiction, multiplying, parties_of
@@ -30,6 +32,8 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
     stopped = f"stopped at t = {time:.6g}"
     if fault := user_faults.fault(model, time):
         return f"{stopped}: {fault}; {KEPT}"
+    if reason == OFF_PATH:
+        return f"{stopped}: {_beyond(model, numbering, state)}; {KEPT}"
     if reason == GAP:
         if told := contradiction(system, state, numbering):
             return f"{stopped}: {told}; {KEPT}"
@@ -47,6 +51,22 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
                      "or check the loads"))
     return (f"{stopped}: {REASONS[reason]}, even with the step reduced to {shortest:.3g}; {KEPT}. "
             f"{remedy}{_jammed(model, numbering, state)}")
+
+
+def _beyond(model: Model, numbering: Numbering, state: State) -> str:
+    """Which point is at the end of its path, and where: the nearest to an end of all."""
+    found = []
+    for joint in model.joints:
+        if joint.kind != PATH:
+            continue
+        way, path = way_of(joint, "a run"), joint.constraints[0].path.path
+        s, rate = (float(row[numbering.dof_blocks[way]]) for row in (state.q_old, state.v_old))
+        found += [(abs(s - end) / path.length, f"joint {joint.name!r} comes to the {word} of path "
+                   f"{path.name!r}, whose length is {path.length:.6g}: its way is {s:.6g} and the "
+                   f"rate {rate:.3g}; give the path ends='straight', or hold the joint before")
+                  for end, word, kind in zip((0.0, path.length), ("beginning", "end"), path.ends,
+                                             strict=True) if kind == "refuse"]
+    return min(found)[1]
 
 
 def of_start(system: System, state: State, numbering: Numbering) -> str:

@@ -61,13 +61,16 @@ def checked(scheme: Scheme) -> Scheme:
     return scheme
 
 
-def fitting(scheme: Scheme | None, constrained: bool, variable: bool) -> Scheme:
+def fitting(scheme: Scheme | None, constrained: bool, variable: bool,
+            sliding: bool = False) -> Scheme:
     """The given scheme, `checked`, or by default one that suits the steps and the constraints.
 
     Parameters
     ----------
     constrained, variable : bool
         Whether there are constraints, and whether steps are chosen by a tolerance.
+    sliding : bool
+        Whether joints are on paths, whose forces have spikes with index 3.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def fitting(scheme: Scheme | None, constrained: bool, variable: bool) -> Scheme:
         Variable steps with constraints of index 3.
     """
     if scheme is None:
-        return _default(2 if constrained and variable else 3)
+        return _default(2 if constrained and (variable or sliding) else 3)
     if variable and constrained and not scheme.stabilized:
         raise InputError("with constraints of index 3 errors grow where the step changes: give "
                          "generalized_alpha(index=2), or a fixed step")

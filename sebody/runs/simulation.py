@@ -62,7 +62,7 @@ class Simulation:
     h : float
         Time step, also the output grid [time].
     scheme : Scheme, optional
-        `generalized_alpha` with rho 0.9 by default.
+        `generalized_alpha` with rho 0.9 by default; of index 2 where joints are on paths.
     output_every : int
         Keep every so many steps.
     tolerance : Tolerance, optional
@@ -118,7 +118,8 @@ class Simulation:
         prepare([model])
         self.grid = Grid(self.h, tolerance is None) if self.gives_loads_to_steps else None
         self.system, self.numbering = build(model, threads, self.grid)
-        self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None)
+        self.scheme = fitting(scheme, bool(self.numbering.multipliers), tolerance is not None,
+                              bool(model.ways()))
         self.dense = not self.system.slot_unknowns.size     # no elimination by blocks
         self.plan, self.log = plan or Plan(), StepLog()
         self.state = allocate(model, self.system, self.numbering, self.h, self.dense,

@@ -17,6 +17,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.series import coordinate_vectors
 from sebody.model.summary import unknowns
+from sebody.model.variants.moved_paths import put_on
 from sebody.model.variants.moved_points import on_body
 from sebody.reduction.body import ReducedBody
 
@@ -143,4 +144,5 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
                 constants=_load_constants(one, made)) if one.body is old else
         on_body(one, made, model.planar) if one.point is not None and one.point.body is old else one
         for one in model.loads]
+    put_on(model, old, made)
     return made

@@ -13,6 +13,7 @@ from sebody.model.beams import beam
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Beam, DofBlock, Node
 from sebody.model.variants.copying import Variant, checked, copied, loads_on
+from sebody.model.variants.moved_paths import paths_on
 
 
 def divide(model: Mechanism, name: str, bodies: int, elements: int | None = None,
@@ -92,6 +93,9 @@ def _described(model: Mechanism, name: str) -> Beam:
             raise InputError(f"{what}superelement {part.name!r} was changed; divide the beam first")
         if np.any(part.mode_rates):
             raise InputError(f"{what}modes of {part.name!r} have initial velocities")
+        for path in paths_on(model, part):
+            raise InputError(f"{what}path {path.name!r} goes along superelement {part.name!r}; "
+                             "build the model anew with a beam of other parts")
         for load in loads_on(model, part):
             raise InputError(f"{what}{load.name!r} acts on superelement {part.name!r}; apply it to "
                              "nodes")

@@ -54,13 +54,16 @@ def planar(model: Mechanism) -> Variant:
     Raises
     ------
     InputError
-        A planar model, a joint without a planar form, what is not symmetric about
+        A planar model, a joint without a planar form, a path, what is not symmetric about
         the plane (the first thing that was found), or no planar kernel for a body.
     """
     if checked(model).planar:
         raise InputError("the model is planar already")
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
+    for path in model.paths:
+        raise InputError(f"path {path!r} has no planar form: build the model with "
+                         "Model(planar=True)")
     check_joints(model)
     refused: InputError | None = None
     for normal in _normals(model):

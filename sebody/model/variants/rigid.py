@@ -12,6 +12,7 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
 from sebody.model.variants.copying import Variant, copied, load_name, loads_on, placed
 from sebody.model.variants.dependent import is_held, make_dependent, start_rate
+from sebody.model.variants.moved_paths import refuse_paths
 from sebody.model.variants.moved_points import on_rigid_body
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.summary import place
@@ -47,6 +48,7 @@ def rigid(model: Mechanism, name: str) -> Variant:
     if placed(model, name).reduced.rests:
         raise InputError(f"superelement {name!r} is held to the ground without inertial coupling "
                          "with its base: its mass as a rigid body is unknown")
+    refuse_paths(model, placed(model, name), "rigid")
     made = copied(model)
     body = made.bodies.pop(name)
     made.own_names.discard(name)

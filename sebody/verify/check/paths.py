@@ -47,8 +47,8 @@ def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
     size, behind = d * (1 + n + FOLLOWERS), 2 * d + 1
     rows = 0.5 * random.normal(size=(len(KNOTS), 2, size))
     Q = 0.3 * random.normal(size=(FOLLOWERS, n, n))
-    path = np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -99.0, 99.0, KNOTS, rows.ravel(),
-                 (Q + Q.transpose(0, 2, 1)).ravel()]
+    path = np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -99.0, 99.0, KNOTS,
+                 rows.ravel(), (Q + Q.transpose(0, 2, 1)).ravel()]
     q, v, a = (np.r_[own, random.normal(size=behind)] for own in (body.q, body.v, body.a))
     q[n + d] = WAY
     index = np.r_[index_row(len(q), nodes.positions, nodes.rotations), 0]
