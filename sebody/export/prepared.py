@@ -84,7 +84,7 @@ class Prepared:
         self.identifier = re.sub(r"\W", "_", name, flags=re.ASCII)
         if not self.identifier[0].isalpha():
             self.identifier = f"model_{self.identifier}"
-        _refuse_paths(model)
+        refuse_paths(model)
         made, asked = with_inputs(model, inputs_of)
         self.run = Simulation(made, run.h, run.scheme, 1, run.tolerance, run.start)
         evaluate_alone(made, self.run.system)       # others need this machine's vectors
@@ -187,7 +187,7 @@ def _with_spare_corner(system: System) -> System:
                    jumps=np.append(system.jumps, 1))
 
 
-def _refuse_paths(model: Model) -> None:
+def refuse_paths(model: Model) -> None:
     """Refuse joints on paths, which are looked up by functions that exports do not have."""
     for joint in model.joints:
         if joint.kind == PATH:

@@ -65,6 +65,8 @@ def drive_slide(model: Mechanism, node: Joint | Node | str, motion: Source,
                 name: str | None = None) -> Joint:
     """Prescribe the displacement of `node` against `to` (the ground) along an axis fixed in `node`.
 
+    The axis is rigid, as that of a prismatic joint; use `drive_way` along a path of a flexible
+    body.
     Its sign is that of the displacement of a prismatic joint, a slider and an actuator.
 
     Parameters

@@ -218,7 +218,8 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
     """Point on a line: `node` slides along an axis through its place, fixed in `to`.
 
     Its displacement is that of `node` against `to` (the ground) along the axis, 0 at the start; so
-    are limits, drives and actuators. All rotations are free.
+    are limits, drives and actuators. All rotations are free. For a line that bends with a flexible
+    body, or is curved, use `path_joint`.
 
     Parameters
     ----------

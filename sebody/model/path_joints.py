@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
@@ -32,6 +31,7 @@ from sebody.model.paths import known_path
 
 PATH = "path"       # kind of these joints
 OFF = 1e-6          # of the size of the model: by which a node may be off its path
+POLISHED = 12       # Newton's steps to it
 SAMPLES = 8         # places in each interval between knots from which the nearest one is looked for
 
 
@@ -198,9 +198,7 @@ def _nearest(path: Path, point: NDArray) -> float:
 
         def square(way: float, of=of) -> float:
             return float(np.sum((of(way) - point)**2))
-        best = minimize_scalar(square, bounds=(low, high), method="bounded",
-                               options={"xatol": 1e-9 * (high - low)})
-        local = _polished(of, float(best.x), point, low, high)
+        local = _polished(of, float(ways[i]), point, float(low), float(high))
         found.append((square(local), local + piece.offset))
         found += [(square(end), end + piece.offset) for end in (0.0, float(piece.ways[-1]))]
     return float(min(found)[1])
@@ -208,7 +206,7 @@ def _nearest(path: Path, point: NDArray) -> float:
 
 def _polished(of, way: float, point: NDArray, low: float, high: float) -> float:
     """A way where the path is normal to the line to a point, from one nearby: Newton's steps."""
-    for _ in range(4):
+    for _ in range(POLISHED):
         gap, slope, bend = of(way) - point, of(way, 1), of(way, 2)
         change = -(gap @ slope) / max(slope @ slope + gap @ bend, 1e-300)
         way = float(np.clip(way + change, low, high))

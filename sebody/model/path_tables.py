@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from sebody.model.body_points import held_points
 from sebody.model.parts import Node, Path, PathPiece, Superelement
 from sebody.reduction.recovery import Recovery
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
 
 NO_EDGE = 1e300         # of the weight of the first and the last body, and of straight ends
 MARGIN = 1e-6           # of the length: by which iterates may pass an end
@@ -89,6 +91,8 @@ def _slopes(ways: NDArray, values: NDArray, turned: NDArray | None) -> NDArray:
     Its ends turn as FE nodes do, where these have rotations. Two knots have no more than these;
     without rotations they are a straight line.
     """
+    from scipy.interpolate import CubicSpline  # of models with paths alone
+
     if len(ways) == 2 and turned is None:
         return np.repeat((np.diff(values, axis=0) / np.diff(ways)[:, None, None]), 2, axis=0)
     slopes = (np.repeat(np.diff(values, axis=0) / (ways[-1] - ways[0]), 2, axis=0)
@@ -101,6 +105,8 @@ def _slopes(ways: NDArray, values: NDArray, turned: NDArray | None) -> NDArray:
 
 def curve(path: Path, k: int) -> CubicHermiteSpline:
     """A piece of a path where it is at the start, in global axes, by the way along this piece."""
+    from scipy.interpolate import CubicHermiteSpline
+
     piece, rows = path.pieces[k], rows_of(path.pieces[k])
     shift = piece.points[0] - rows.values[0, 0]
     return CubicHermiteSpline(piece.ways, rows.values[:, 0] + shift, rows.slopes[:, 0])

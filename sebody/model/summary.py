@@ -63,6 +63,7 @@ def _tables(model: Mechanism) -> list[tuple[str, Sequence[str], list[tuple]]]:
               ("Nodes", ("node", "point", "position", "rotation", "initial velocity"),
                _nodes(model)),
               ("Joints and drives", ("name", "kind", "of", "to", "equations"), _joints(model)),
+              ("Paths", ("path", "on", "length", "knots", "ends"), _paths(model)),
               ("Loads, springs and dampers", ("name", "kind", "on", "course"), _loads(model)),
               ("Sensors", ("name", "quantity", "between samples", "delay", "noise"),
                _sensors(model)),
@@ -127,6 +128,15 @@ def _joints(model: Mechanism) -> list[tuple]:
              str(joint.multipliers) if joint.multipliers else
              "none: its nodes share coordinates or are fixed")
             for joint in model.joints]
+
+
+def _paths(model: Mechanism) -> list[tuple]:
+    grounds = set(map(id, model.grounds))
+    return [(path.name, ", ".join("the ground" if id(piece.carrier) in grounds else
+                                  piece.carrier.name for piece in path.pieces),
+             f"{path.length:.6g}", str(sum(len(piece.ways) for piece in path.pieces)),
+             ", ".join(dict.fromkeys(path.ends)))
+            for path in model.paths.values()]
 
 
 def _loads(model: Mechanism) -> list[tuple]:

@@ -58,6 +58,8 @@ def signs(model: Mechanism, nodes: set[str]) -> list[Sign]:
     drawn = [Sign(joint.kind, joint.name, (joint.to if on_ground(joint.node) else joint.node).name,
                   _columns(joint), joint.axes.carrier.name)
              for joint in model.joints if joint.axes is not None]
+    drawn += [Sign("path", joint.name, joint.node.name, ABOUT_Z, joint.node.name)
+              for joint in model.joints if joint.kind == "path"]
     drawn += [Sign("ground", f"ground of {joint.name}", node.name, ABOUT_Z, node.name)
               for joint in model.joints for node in (joint.node, joint.to) if on_ground(node)
               and joint.kind not in SLIDING]

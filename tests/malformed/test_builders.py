@@ -1,13 +1,15 @@
 """Builders of a model refuse wrong arguments in words, and change nothing then."""
 
 import pytest
-from malformed import contact_cases, model_cases
+from malformed import contact_cases, model_cases, path_cases
 from malformed.cases import alike, listed
 
 from sebody import InputError, Model
 
 SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
            | model_cases.CONTROL | contact_cases.CASES)
+MODELS = {**dict.fromkeys(SPATIAL, model_cases.spatial),
+          **dict.fromkeys(path_cases.CASES, path_cases.railway)}
 
 
 def described(model: Model) -> list:
@@ -16,7 +18,7 @@ def described(model: Model) -> list:
     parts += [[one.name for one in group] for group in (
         model.nodes.values(), model.bodies.values(), model.rigid_bodies.values(), model.joints,
         model.loads, model.grounds, model.sensors.values(),
-        model.controllers.values())]
+        model.controllers.values(), model.paths.values())]
     parts.append([id(one) for one in model.connections])
     for dof_block in model.dof_blocks():
         parts.append([dof_block.name, dof_block.fixed, dof_block.given, id(dof_block.root),
@@ -43,10 +45,15 @@ def test_in_a_plane(right, argument, value, said):
     refuse(model_cases.planar(), right, argument, value, said)
 
 
-@pytest.mark.parametrize("name", SPATIAL)
+@pytest.mark.parametrize("right, argument, value, said", listed(path_cases.CASES))
+def test_paths(right, argument, value, said):
+    refuse(path_cases.railway(), right, argument, value, said)
+
+
+@pytest.mark.parametrize("name", MODELS)
 def test_the_corrected_call_is_accepted(name):
     """In a notebook, say: after all refused ones, on the same model."""
-    right, model = SPATIAL[name], model_cases.spatial()
+    right, model = (SPATIAL | path_cases.CASES)[name], MODELS[name]()
     for argument, wrong in right.wrong.items():
         for value, _ in wrong:
             with pytest.raises(InputError):

@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from malformed import contact_cases, model_cases
+from malformed import contact_cases, model_cases, path_cases
 
 import sebody.generated
 from sebody import Model
@@ -24,7 +24,7 @@ BUILDERS = [name for name, value in vars(Model).items()
 # refused by `planar(model)` by name: their planar kernels exist, the way from space is not written
 WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
 # on coordinates of a body, see variants/planar.py
-OF_BODIES = ("body_load_", "body_contact_", "mode_force")
+OF_BODIES = ("body_load_", "body_contact_", "body_path_", "mode_force")
 
 
 def variants(right):
@@ -40,7 +40,8 @@ def variants(right):
 
 def joints():
     """All joints that the right calls build, with the models they are in."""
-    for make, cases in ((model_cases.spatial, SPATIAL), (model_cases.planar, model_cases.FLAT)):
+    for make, cases in ((model_cases.spatial, SPATIAL), (model_cases.planar, model_cases.FLAT),
+                        (path_cases.railway, path_cases.CASES)):
         for right in cases.values():
             for arguments in variants(right):
                 model = make()
@@ -50,7 +51,7 @@ def joints():
 
 @pytest.mark.parametrize("name", BUILDERS)
 def test_every_builder_has_malformed_cases(name):
-    cases = [right for right in (SPATIAL | model_cases.FLAT).values()
+    cases = [right for right in (SPATIAL | model_cases.FLAT | path_cases.CASES).values()
              if inspect.unwrap(right.function) is inspect.unwrap(getattr(Model, name))]
     assert cases, (f"Model.{name} has no malformed cases: add them to "
                    "tests/malformed/model_cases.py")
@@ -79,7 +80,7 @@ def test_every_element_has_a_planar_form():
 def test_every_equation_is_built_by_a_case():
     """So the pictures of all joints are looked at below."""
     built = {equation.kind for model, joint in joints() for equation in joint.constraints
-             if not model.planar}
+             if not model.planar and not equation.kind.startswith(OF_BODIES)}
     assert built == constraints_and_others()[0]
 
 

@@ -15,6 +15,7 @@ from sebody.basics.errors import InputError
 from sebody.explore.assemblies.wanted import Interfaces
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint
+from sebody.model.path_joints import PATH
 from sebody.model.variants.copying import copied
 
 PLANAR = "planar_"
@@ -37,7 +38,8 @@ def refuse_outsiders(model: Model, interfaces: Interfaces) -> None:
     Raises
     ------
     InputError
-        Controllers, actuators, drives, loads on inner nodes, or supports of inner nodes.
+        Controllers, actuators, drives, joints on paths, loads on inner nodes, or supports of inner
+        nodes.
     """
     if model.controllers:
         raise InputError(f"controller {next(iter(model.controllers))!r} cannot be inside a "
@@ -46,6 +48,10 @@ def refuse_outsiders(model: Model, interfaces: Interfaces) -> None:
         raise InputError("the model has no bodies: there is nothing to reduce")
     held = set(interfaces.blocks(model))
     for joint in model.joints:
+        if joint.kind == PATH:
+            raise InputError(f"joint {joint.name!r} slides along a path and cannot be inside a "
+                             "superelement: reduce the model without it, and build it anew on the "
+                             "superelement")
         if joint.kind == "drive" and not _supports(model, joint, held):
             raise InputError(f"drive {joint.name!r} at node {joint.node.name!r} cannot be inside a "
                              "superelement: weld what it drives, or make the node an interface")

@@ -95,6 +95,7 @@ const SIGNS = {
   cylindrical: [["cylinder", [2.6, 0.35, 0.35], 0], ["cylinder", [1.0, 0.65, 0.65], 0]],
   prismatic: [["cube", [1.7, 0.6, 0.6], 0]],
   slider: [["cube", [1.3, 0.6, 0.6], 0]],
+  path: [["sphere", [0.9, 0.9, 0.9], 0]],
   universal: [["cylinder", [1.3, 0.3, 0.3], 0], ["cylinder", [1.3, 0.3, 0.3], 1],
               ["sphere", [0.6, 0.6, 0.6], 0]],
   spherical: [["sphere", [0.8, 0.8, 0.8], 0]],
