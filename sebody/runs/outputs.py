@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.basics.units import Units
 from sebody.contract.counts import MEMBERS
 from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, NOW, TOTAL
 from sebody.quantities.names import split
@@ -21,6 +22,7 @@ from sebody.results.naming import look_up
 from sebody.results.nodal import MOTIONS
 from sebody.results.recording import Recording
 from sebody.results.tapes import States
+from sebody.results.units import unit_of_curves
 from sebody.runs.folds import FACTS, FOUND, Folds, fold, write_values
 from sebody.runs.simulation import Simulation
 
@@ -65,6 +67,11 @@ class Output:
     def size(self, shape: tuple[int, ...]) -> int:
         """How many values there are of a quantity of some shape in a state."""
         return 1 if self.norm else prod(shape)
+
+    def unit(self, units: Units) -> str:
+        """Its unit in those of a model; empty where the quantity has none that is known."""
+        words = unit_of_curves(self.quantity)
+        return units.of(f"{words} time" if words and self.kind == "integral" else words)
 
 
 def maximum(quantity: str, norm: bool = False) -> Output:

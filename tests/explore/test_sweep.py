@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from sebody import InputError, simulate
-from sebody.analysis import equilibrium, final, maximum
+from sebody.analysis import equilibrium, final, integral, maximum
 from sebody.cli.entry import main
 from sebody.explore import sweep as room
 from sebody.explore.sweep import Distribution, sobol, sweep
@@ -329,6 +329,30 @@ def test_answers_of_one_or_two_parameters_are_listed(varied, axes, tmp_path):
         assert head.split() == ["output", "5", "%", "median", "95", "%"]
     draw(table, tmp_path / "sweep.png")
     assert (tmp_path / "sweep.png").stat().st_size > 5000
+
+
+def test_tables_and_pictures_have_the_units_of_the_model(tmp_path, monkeypatch):
+    """Also a table that is read from its file; without units there are none."""
+    def in_millimetres(length: float = 900.0):
+        scene = build(length)
+        scene.model.units = "mm t N s"
+        return scene
+
+    outputs = {"tip": final("tip.position"), "way": integral("tip.velocity", norm=True),
+               "turn": maximum("tip.rotation")}
+    path = tmp_path / "table.npz"
+    table = sweep(in_millimetres, outputs, {"length": [900.0, 950.0]}, output=path)
+    assert table.units == {"tip": "mm", "way": "mm/s s", "turn": "rad"}
+    for one in (table, Table.load(path)):
+        assert one.summary().splitlines()[1].split() == [
+            "length", "tip[0]", "[mm]", "tip[1]", "[mm]", "way", "[mm/s", "s]", "turn", "[rad]"]
+    plotted = pytest.importorskip("matplotlib.figure")
+    names = []
+    monkeypatch.setattr(plotted.Figure, "savefig", lambda figure, *_, **__: names.extend(
+        axis.get_ylabel() for axis in figure.axes))
+    draw(table, tmp_path / "sweep.png")
+    assert names == ["tip[0] [mm]", "tip[1] [mm]", "way [mm/s s]"]      # it does not turn
+    assert sweep(build, OUTPUTS, {"length": [1.0, 1.5]}).units == {}
 
 
 def test_a_table_as_csv_is_what_pandas_reads(tmp_path):

@@ -95,9 +95,10 @@ def sweep(build: Callable[..., Any], outputs: Mapping[str, Output],
         raise InputError(f"{min(others)} cannot vary where runs start from equilibrium: each of "
                          "its values has another one; make it an argument of build, with which the "
                          "model is built anew")
-    models = check_plan(plan, made.columns, structural)
+    models, units = check_plan(plan, made.columns, structural)
     path = None if output is None else check_target(output, "table", (".npz",))
     table = _begun(path, _text(build, fixed, outputs, made, models), made)
+    table.units = units
     left = np.flatnonzero(~table.done)
     where = (places.cluster(cluster, workers) if cluster is not None or workers is not None else
              places.threads(processors() if threads is None else

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, SebodyError
+from sebody.basics.units import parsed_units
 from sebody.explore.ensembles import Ensemble, Output
 from sebody.runs.schemes import generalized_alpha
 from sebody.runs.statics import equilibrium
@@ -151,13 +152,16 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str]) -> list[str]:
+def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str]
+               ) -> tuple[list[str], dict[str, str]]:
     """Build the first run and check all values, so that nothing wrong is found half-way.
 
     Returns
     -------
     list of str
         Hashes of the models that were built: tables of other models are those of other sweeps.
+    dict of str to str
+        Units of outputs, of a model that has units.
 
     Raises
     ------
@@ -171,7 +175,9 @@ def check_plan(plan: Plan, columns: Mapping[str, NDArray], structural: set[str])
     others = [_built(plan, structure) for structure in _others(of_structure, first.structure)]
     ensemble.check({name: values for name, values in columns.items() if name not in structural},
                    t_end, dict(plan.outputs))
-    return [f"{one.identity} until {end!r}" for one, end in ((ensemble, t_end), *others)]
+    units = parsed_units(ensemble.model.units)
+    return ([f"{one.identity} until {end!r}" for one, end in ((ensemble, t_end), *others)],
+            {name: one.unit(units) for name, one in plan.outputs} if units else {})
 
 
 def _others(columns: Mapping[str, NDArray], first: tuple[tuple[str, Any], ...]

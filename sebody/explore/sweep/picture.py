@@ -42,7 +42,7 @@ def draw(table: Table, path: Path) -> None:
                 _scatter(axis, table.parameters[name][table.good], values,
                          line=len(over) == 1)
                 axis.set_xlabel(name, fontsize=8)
-            row[0].set_ylabel(output, fontsize=8)
+            row[0].set_ylabel(table.label(output), fontsize=8)
             if len(over) == 1:
                 continue
             row[-1].hist(values, bins=min(40, max(5, int(np.sqrt(len(values))))),
@@ -73,7 +73,7 @@ def _map(figure, axis, table: Table, over: list[str], output: str) -> None:
     axis.set_xlabel(over[0], fontsize=8)
     axis.set_ylabel(over[1], fontsize=8)
     bar = figure.colorbar(shown, ax=axis)
-    bar.set_label(output, fontsize=8)
+    bar.set_label(table.label(output), fontsize=8)
     bar.ax.tick_params(labelsize=7)
 
 

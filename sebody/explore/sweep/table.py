@@ -43,6 +43,8 @@ class Table:
         Whether the run was done, perhaps in vain.
     failures : (runs,) of str
         Why a run failed; empty of others.
+    units : dict
+        Units of outputs by name, of models that have units.
     """
 
     design: str
@@ -50,6 +52,7 @@ class Table:
     outputs: dict[str, NDArray]
     done: NDArray
     failures: NDArray = field(default_factory=lambda: np.zeros(0, dtype=object))
+    units: dict[str, str] = field(default_factory=dict)
 
     @classmethod
     def empty(cls, design: str, parameters: dict[str, NDArray], runs: int) -> "Table":
@@ -110,6 +113,11 @@ class Table:
                         {f"{name}[{k}]": flat[:, k] for k in range(flat.shape[1])})
         return {**by_name, "done": self.done, "failure": self.failures}
 
+    def label(self, column: str) -> str:
+        """A column's name with its unit, where that is known."""
+        unit = self.units.get(column.partition("[")[0], "")
+        return f"{column} [{unit}]" if unit else column
+
     def axes(self) -> list[str]:
         """The one or two parameters that vary, where every combination of their values is one run.
 
@@ -124,7 +132,7 @@ class Table:
         """Heads and rows of a table of `axes` and of the outputs, a row for each run."""
         columns, axes = self.columns(), self.axes()
         outputs = [name for name in columns if name.partition("[")[0] in self.outputs]
-        return [*axes, *outputs], [
+        return [*axes, *map(self.label, outputs)], [
             [*(_number(columns[name][k]) for name in axes),
              *(_number(self._rounded(name, columns[name][k])) for name in outputs)]
             for k in range(self.runs)]
@@ -155,9 +163,9 @@ class Table:
         if quantiles and self.axes():
             return text("\n".join(lines), *self._answers())
         if quantiles:
-            width = max(map(len, quantiles))
+            width = max(len(self.label(name)) for name in quantiles)
             lines.append(f"{'output':{width}} {'5 %':>12} {'median':>12} {'95 %':>12}")
-            lines += [f"{name:{width}} " + " ".join(
+            lines += [f"{self.label(name):{width}} " + " ".join(
                 f"{self._rounded(name, q):12.6g}" for q in values)
                       for name, values in quantiles.items()]
         return "\n".join(lines)
@@ -193,6 +201,8 @@ class Table:
         arrays |= {f"output/{n}": v for n, v in self.outputs.items()}
         arrays |= {"design": np.array(self.design), "version": np.array(VERSION),
                    "done": self.done, "failure": _storable(self.failures)}
+        if self.units:
+            arrays["units"] = np.array(json.dumps(self.units))
         noted = np.array(json.dumps(checksums(arrays)))
         with replacing(path, "table") as file:
             np.savez_compressed(file, **arrays, checksums=noted)
@@ -225,8 +235,9 @@ class Table:
                 raise table.fault(f"differs from what was saved in {', '.join(odd)}")
             parts = {kind: {name.partition("/")[2]: values for name, values in arrays.items()
                             if name.startswith(kind + "/")} for kind in ("parameter", "output")}
+            units = json.loads(str(arrays["units"])) if "units" in arrays else {}
             return cls(str(arrays["design"]), parts["parameter"], parts["output"], arrays["done"],
-                       arrays["failure"].astype(object))
+                       arrays["failure"].astype(object), units)
 
 
 def _number(value: object) -> str:
@@ -238,6 +249,8 @@ def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]
     one = members.Member
     known = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
              "failure": one(("runs",), "U")}
+    if "units" in headers:
+        known["units"] = one((), "U")
     for name, header in headers.items():
         if name.startswith("parameter/"):
             kind = header.dtype.kind
