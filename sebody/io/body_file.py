@@ -31,13 +31,15 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import check_layout, check_stiffness, coordinate_names
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.missing import lacks, sentences
+from sebody.reduction.preload import Preload
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.rigid_motions import rigid_motions
 
 FORMAT, VERSION = "sebody body", 1
 TARGET = "body file", (".npz",)     # see `files.check_target`
 STRESSES = SolidStress, BeamStress, StressModes     # of a Recovery
-PARTS = {"invariants": InertiaInvariants, "recovery": Recovery}     # of a ReducedBody
+# of a ReducedBody
+PARTS = {"invariants": InertiaInvariants, "recovery": Recovery, "preload": Preload}
 _LEAN = "shapes and mesh of the FE model were left out of the file; write it with them"
 _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 

@@ -18,13 +18,16 @@ _OPTIONAL = {
     "recovery.shapes": Member(("rows", None)), "recovery.coordinates": Member(("nodes", "D")),
     "recovery.axes": Member(("D", "D")), "recovery.by": _MATRIX,
     "recovery.labels": Member(("nodes",), "i"), "recovery.nodes": Member(("nodes",), "i"),
+    "preload.nodes": Member(("lines", 2), "i"), "preload.arms": Member(("lines", 2, "D")),
+    "preload.tension": Member(("lines",)),
     "recovery.outlines": Member((None, None, 3)), "recovery.static": Member(("rows", None)),
     **{f"invariants.{name}": Member(shape) for name, shape in LENGTHS.items()}}
 _MEMBERS = {"stiffness": _MATRIX, "mass": _MATRIX, "coordinates": Member(("boundary", "D")),
             **{name: one._replace(needed=False) for name, one in _OPTIONAL.items()}}
 # which all are there or none
 _GROUPS = {"invariants": [f"invariants.{name}" for name in LENGTHS],
-           "recovery": ["recovery.shapes", "recovery.coordinates"]}
+           "recovery": ["recovery.shapes", "recovery.coordinates"],
+           "preload": ["preload.nodes", "preload.arms", "preload.tension"]}
 
 
 def body_table(file: str, headers: Mapping[str, Header], notes: dict) -> Table:

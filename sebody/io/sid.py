@@ -71,6 +71,9 @@ def write_sid(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
     path = check_target(path, *TARGET)
     names = (tuple(map(str, range(1, len(body.keeps) + 1))) if names is None else
              checked_names(names, len(body.keeps)))
+    if body.preload is not None:
+        raise InputError("SID files hold bodies that are free of stress where they are undeformed, "
+                         "and this one has a preload: reduce it without")
     if body.planar or body.invariants is None:
         raise InputError("SID files hold spatial bodies with the integrals of exact inertia: "
                          "reduce an FE model with a mass field, such as one of solids")

@@ -30,6 +30,7 @@ from sebody.model.inertias import (
 )
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement, positions, rotations
+from sebody.model.preloads import add_preload
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.summary import place
 
@@ -77,6 +78,18 @@ def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
         stiffening requested for a body without geometric stiffness, or no kernel for the layout
         (the message says how to make it).
     """
+    made = placed_superelement(model, name, body, nodes, frame, inertia, rotation, frame_node,
+                               stiffening)
+    add_preload(model, made)
+    return made
+
+
+def placed_superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
+                        nodes: Iterable[Node | str], frame: str | None = None,
+                        inertia: str | None = None, rotation: ArrayLike | None = None,
+                        frame_node: int | None = None, stiffening: bool | None = None
+                        ) -> Superelement:
+    """The same without the springs of its preload, which are in the model already."""
     _check_name(model, name, "superelement")
     own_nodes = tuple(known(model, n) for n in inputs.items(
         nodes, f"nodes of superelement {name!r}", "give a list of nodes"))

@@ -22,6 +22,7 @@ from sebody.reduction.invariant_checks import check_invariants
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.loads import named_outputs, named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
+from sebody.reduction.preload import Preload, preload_of
 from sebody.reduction.recovery import Recovery
 from sebody.reduction.recovery_checks import check_recovery
 from sebody.reduction.rigid_motions import first_moment, rigid_motions, strainless_coordinates
@@ -80,6 +81,10 @@ class ReducedBody:
         Units of its numbers, such as ``mm t N s``; empty if they are not known.
     base : int, optional
         Boundary node that is the base of a body held to the ground, see `grounded_body`.
+    preload : Preload or (n,), optional
+        Forces on the interfaces that hold the undeformed body, which is under stress. They are
+        carried by lines between the interfaces, whose stiffness is not in `stiffness`: models get
+        springs in their place, see `sebody.reduction.preload`.
 
     Raises
     ------
@@ -103,6 +108,7 @@ class ReducedBody:
     units: str = ""
     outputs: Mapping[str, NDArray] = field(default_factory=dict)
     base: int | None = None
+    preload: Preload | None = None
     # of a rotated body what it was made of, and the rotation; `replace` does not take it over
     _made_of: tuple[ReducedBody, NDArray] | None = field(default=None, init=False, repr=False)
 
@@ -135,6 +141,9 @@ class ReducedBody:
                           strainless_coordinates(keeps, coordinates.shape[1]))
         checks.check_stiffness(self.stiffness, rigid, names)
         checks.check_mass(self.mass, rigid, names)
+        if self.preload is not None:
+            object.__setattr__(self, "preload", preload_of(self.preload, coordinates, keeps,
+                                                           len(names)))
         if self.damping is not None:
             checks.check_damping(self.damping, rigid, names)
         if self.invariants is not None:
@@ -246,6 +255,7 @@ class ReducedBody:
             *(f"boundary node {k} at {place(point)} keeps {keep!r}"
               for k, (point, keep) in enumerate(kept)),
             *mode_lines(self.stiffness, self.mass, self.rigid_modes_about(centre), self.modes),
+            *([] if self.preload is None else [self.preload.told]),
             *self.notes, *(f"caution: {text}" for text in self.cautions)])
 
     def displacements(self, y: ArrayLike) -> NDArray:
@@ -368,4 +378,5 @@ class ReducedBody:
             recovery=self.recovery and self.recovery.rotated(rotation, by),
             loads={name: by @ load for name, load in self.loads.items()},
             outputs={name: matrix @ by.T for name, matrix in self.outputs.items()},
+            preload=self.preload and self.preload.rotated(rotation),
         )

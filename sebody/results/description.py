@@ -17,7 +17,7 @@ from sebody.fem import materials
 from sebody.model import mechanism, numbering, parts, time_functions
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering
-from sebody.reduction import invariants, recovery
+from sebody.reduction import invariants, preload, recovery
 from sebody.results.saved_checks import check_numbering, check_part, check_tuple, fields_in_files
 
 
@@ -27,7 +27,8 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, time_functions, mechanism, numbering, invariants, recovery, materials)
+KINDS = _kinds(parts, time_functions, mechanism, numbering, invariants, preload, recovery,
+               materials)
 
 
 def described(model: Mechanism, numbers: Numbering) -> tuple[str, NDArray]:

@@ -13,14 +13,14 @@ from sebody.explore.assemblies.inertia_sums import summed_invariants
 from sebody.explore.assemblies.kept_shapes import Kept, LooseInside, kept_shapes
 from sebody.explore.assemblies.placed_bodies import Motion, Placed, placed_bodies
 from sebody.explore.assemblies.recovered import recovered
-from sebody.explore.assemblies.states import Given, given_state
+from sebody.explore.assemblies.states import AT_REST, Given, given_state
 from sebody.explore.assemblies.wanted import Interfaces, interfaces_of
 from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.model.parts import Node
-from sebody.reduction import checks
 from sebody.reduction.accuracy import Accuracy
 from sebody.reduction.body import ReducedBody
+from sebody.reduction.preload import Preload, preload_of
 from sebody.reduction.rigid_motions import rigid_motions
 from sebody.results.result import Result
 from sebody.runs.simulation import Simulation
@@ -28,7 +28,7 @@ from sebody.small_motion.shapes import Shapes
 
 SYMMETRIC = 1e-8        # part of a matrix that may be skew: rounding, or loads that turn
 BALANCED = 1e-7         # way by which loads inside move a node, over the size of the model, or rad
-UNDAMPED = 1e-12        # damping at the fastest frequency, over stiffness, that is none
+UNBALANCED = 1e-4       # of the forces on the interfaces: a sum that is rounding of the equilibrium
 NO_STIFFENING = "reduced from an assembly; divide it where it spins fast or bears high loads"
 
 
@@ -100,7 +100,9 @@ def _reduced(given: Given, wanted: Interfaces, modes: int | Accuracy | None) -> 
     places = _places(given)
     points = np.array([places[name] for name in wanted.names])
     mass, stiffness, damping = (_congruent(A, kept.shapes) for A in (M, K, C))
-    _refuse_interface_forces(given, wanted, kept, stiffness, points)
+    preload = _preload(given, wanted, kept, stiffness, points)
+    if preload is not None:
+        stiffness = stiffness - preload.stiffness(points, wanted.keeps, len(stiffness))
     placed = placed_bodies(given.held, motion)
     invariants = summed_invariants(placed, given.run.model.rigid_bodies.values(), motion, places,
                                    mass, points, wanted.keeps)
@@ -110,7 +112,7 @@ def _reduced(given: Given, wanted: Interfaces, modes: int | Accuracy | None) -> 
         invariants, inside.recovery, _notes(given, wanted, kept, inside.numbers), _loads(placed),
         _missing(placed),
         tuple(dict.fromkeys(m for one in placed for m in one.body.materials)),
-        given.run.model.units)
+        given.run.model.units, preload=preload)
 
 
 def _congruent(matrix: NDArray, shapes: NDArray) -> NDArray:
@@ -197,23 +199,26 @@ def _refuse_inner_forces(given: Given, names: Shapes, kept: Kept) -> None:
                          "equilibrium of one without loads inside")
 
 
-def _refuse_interface_forces(given: Given, wanted: Interfaces, kept: Kept, stiffness: NDArray,
-                             points: NDArray) -> None:
-    b = len(kept.shapes[0]) - kept.modes
-    forces = (kept.shapes.T @ given.forces)[:b]
-    D = points.shape[1]
-    positions = sum(keep != "rotation" for keep in wanted.keeps)
-    names = checks.coordinate_names(wanted.keeps, D, kept.modes, wanted.names)
-    rigid = rigid_motions(points, wanted.keeps, len(stiffness), points.mean(axis=0))
-    residual, _ = checks.rigid_residual(stiffness, rigid, names)
-    if residual <= checks.RIGID_LIMIT:
-        return
-    of_nodes = forces[:D * positions].reshape(-1, D)
-    lengths = np.linalg.norm(of_nodes, axis=1)
-    k = int(np.argmax(lengths))
-    name = [n for n, keep in zip(*wanted, strict=True) if keep != "rotation"][k]
-    raise InputError(f"interface {name!r} bears a force of {lengths[k]:.6g} in the state reduced, "
-                     "so the stiffness resists rigid motion")
+def _preload(given: Given, wanted: Interfaces, kept: Kept, stiffness: NDArray, points: NDArray
+             ) -> Preload | None:
+    """Forces that the interfaces bear in the state, in balance; None where they are rounding."""
+    forces = kept.shapes.T @ given.forces
+    forces[len(forces) - kept.modes:] = 0.0
+    size = extent(given.run.model) or 1.0
+    unit = np.sqrt(np.abs(np.diag(stiffness)))
+    unit[unit == 0.0] = 1.0
+    moved = np.linalg.lstsq(stiffness / np.outer(unit, unit), forces / unit, 1e-12)[0] / unit
+    if np.abs(moved[:len(forces) - kept.modes]).max() <= AT_REST * size:
+        return None
+    rigid = rigid_motions(points, wanted.keeps, len(forces), points.mean(axis=0))
+    scale = np.linalg.norm(rigid, axis=0)
+    unit = rigid / scale
+    left = unit @ np.linalg.lstsq(unit, forces, None)[0]        # rounding of the equilibrium
+    if np.linalg.norm(left) > UNBALANCED * np.linalg.norm(forces):
+        raise InputError(f"interfaces {', '.join(wanted.names)} bear forces that are not in "
+                         "balance in the state reduced, so that something else holds the model: "
+                         "make every node that is held or loaded an interface")
+    return preload_of(forces - left, points, wanted.keeps, len(forces))
 
 
 def _damping(damping: NDArray, stiffness: NDArray, mass: NDArray) -> NDArray | None:

@@ -11,7 +11,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.contract.names import body_load_kind
-from sebody.model.bodies import superelement
+from sebody.model.bodies import placed_superelement
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Node, Superelement
@@ -133,7 +133,7 @@ def exchange(model: Mechanism, old: Superelement, body: ReducedBody, frame: str,
     order = list(model.bodies)
     del model.bodies[old.name]
     model.own_names.discard(old.name)
-    made = superelement(model, old.name, body, nodes, frame=frame, inertia=inertia,
+    made = placed_superelement(model, old.name, body, nodes, frame=frame, inertia=inertia,
                         frame_node=nodes.index(carrier) if on_node else 0,
                         stiffening=stiffening)
     made.mode_rates = old.mode_rates[:body.modes].copy()
