@@ -1,4 +1,4 @@
-"""What a user runs: simulations, equilibria, small motion about a state, restarts."""
+"""Names that a user runs: simulations, equilibria, small motion about a state, restarts."""
 
 from typing import TYPE_CHECKING
 

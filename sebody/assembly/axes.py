@@ -37,7 +37,7 @@ def frames(model: Mechanism, numbering: Numbering) -> dict[int, int]:
 
 
 def in_frames(model: Mechanism, numbering: Numbering, system: System) -> NDArray:
-    """Whether the element matrices of each batch are in the axes of frames: (batches,) bool.
+    """Tell whether the element matrices of each batch are in the axes of frames: (batches,) bool.
 
     Those of superelements, and of loads on bodies.
     """

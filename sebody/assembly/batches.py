@@ -45,7 +45,7 @@ _rows: WeakKeyDictionary[ReducedBody, dict[tuple, NDArray]] = WeakKeyDictionary(
 
 
 class Shape(NamedTuple):
-    """What the index arrays of a batch depend on."""
+    """Key of the index arrays of a batch."""
 
     width: int
     stride: int                             # length of an index row
@@ -70,7 +70,7 @@ class Batch(NamedTuple):
 
     @property
     def shape(self) -> Shape:
-        """What index arrays depend on."""
+        """Keys of index arrays."""
         return Shape(self.width, len(self.rows[0]), tuple(self.frames),
                      tuple(map(tuple, self.unknowns)), tuple(self.full))
 

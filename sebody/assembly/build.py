@@ -92,7 +92,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:
-    """What the index arrays of a model depend on."""
+    """Key of the index arrays of a model."""
     return Structure(
         numbering.free, numbering.total, numbering.free <= DENSE_LIMIT,
         tuple(numbering.groups.tolist()),

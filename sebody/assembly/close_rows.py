@@ -63,7 +63,7 @@ class Stretches(NamedTuple):
     times: NDArray      # (n, 3) where the first and second level begin, and where the second ends
 
     def inside(self, t: float) -> bool:
-        """Whether a time lies within a stretch, after its beginning and before its end."""
+        """Tell whether a time lies within a stretch, after its beginning and before its end."""
         k = int(np.searchsorted(self.begins, t, side="left")) - 1
         return k >= 0 and t < self.times[k, 2]
 

@@ -112,7 +112,7 @@ def check_superelement(body: Superelement, kernel: ModuleType) -> None:
 
 
 def _of_second_order(invariants: InertiaInvariants, kernel: ModuleType) -> list[str]:
-    """What is wrong with the numbers of slaved coordinates and of stress resultants."""
+    """Faults in the numbers of slaved coordinates and of stress resultants."""
     slaved, resultants = kernel.SECOND_ORDER or (None, None)
     wrong = _different((("slaved coordinates", invariants.slaved, slaved),
                         ("stress resultants", invariants.resultants, resultants)))

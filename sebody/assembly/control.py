@@ -42,7 +42,7 @@ class Tapes(NamedTuple):
 
 
 class Task(NamedTuple):
-    """What is sampled with a period."""
+    """A task that is done with a period."""
 
     kind: int
     number: int
@@ -164,7 +164,7 @@ def _queues(delays: list[tuple[int, int]], first: int) -> tuple[list[int], int]:
 
 def _wires(stored: MemoryMap, controllers: list[Controller], numbers: dict[str, int]
            ) -> tuple[NDArray, list[int]]:
-    """What controllers are given."""
+    """Wires: places of what controllers are given."""
     rows = []
     for one in controllers:
         for name in one.inputs:
@@ -175,7 +175,7 @@ def _wires(stored: MemoryMap, controllers: list[Controller], numbers: dict[str, 
 
 
 def _ends(stored: MemoryMap, controllers: list[Controller]) -> tuple[NDArray, list[int]]:
-    """What controllers set."""
+    """Ends: places of what controllers set."""
     ports = list(stored.inputs)
     rows = [(ports.index(stored.ports[name]), -1) if name in stored.ports
             else (-1, stored.values[name])

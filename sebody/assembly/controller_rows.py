@@ -23,7 +23,7 @@ class ActuatorRow(NamedTuple):
 
 
 def law_parts(element: Element) -> LawParts:
-    """What makes the element of a continuous controller."""
+    """Parts of the element of a continuous controller."""
     assert element.law is not None
     return element.law
 
@@ -47,7 +47,7 @@ def law_counts(constants: Mapping[str, NDArray]) -> dict[str, int]:
 
 def law_row(model: Mechanism, numbering: Numbering, element: Element, unknowns: list[int],
             actuators: dict[Element, ActuatorRow]) -> list[int]:
-    """What follows the unknowns in the index row of a law."""
+    """Numbers behind the unknowns in the index row of a law."""
     law = law_parts(element)
     controller = model.controllers[law.controller]
     memory = numbering.memory

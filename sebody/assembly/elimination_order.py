@@ -65,7 +65,7 @@ def _part(name: str, dof_blocks: Iterable[DofBlock], modes: int) -> Part:
 
 def _couplings(model: Mechanism, owners: Owners,
                awaited: Mapping[Element, set[DofBlock]]) -> list[Coupling]:
-    """What couples several bodies beside the DOF blocks they share."""
+    """Couplings of several bodies beside the DOF blocks they share."""
     couplings = []
     for element in (*model.constraints, *model.loads):
         keys = {p: None for p in parents(element.dof_blocks) if p.solved and p in owners}
@@ -77,7 +77,7 @@ def _couplings(model: Mechanism, owners: Owners,
 
 
 def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[DofBlock]]:
-    """Of every constraint the DOF blocks that its multipliers follow."""
+    """DOF blocks that the multipliers of each constraint follow."""
     ways = set(model.ways())        # which follow the multipliers
     awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} - ways for c in model.constraints}
     for c in model.constraints:

@@ -24,7 +24,7 @@ class Pattern(NamedTuple):
         return int(((self.starts[1:] - self.diagonal - 1) ** 2).sum())
 
     def before(self, row: int) -> NDArray:
-        """Of every column, the first block that is in a block row or below it, or the end."""
+        """First block of every column that is in a block row or below it, or the end."""
         return self.starts[:-1] + np.add.reduceat(self.rows < row, self.starts[:-1], dtype=int)
 
 

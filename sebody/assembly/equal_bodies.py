@@ -29,12 +29,12 @@ DIGITS = 12     # of frame weights, which rotations change by rounding
 
 
 def constants_key(body: Superelement) -> tuple:
-    """What the constants depend on that the kernel of a superelement reads."""
+    """Key of the constants that the kernel of a superelement reads."""
     return (body.reduced, body.kernel, body.stiffening, tuple(body.alpha), tuple(body.alpha_r))
 
 
 def likeness(body: Superelement) -> tuple:
-    """What equal bodies have in common, however each of them is oriented at the start."""
+    """Key that equal bodies have in common, however each of them is oriented at the start."""
     weights = (tuple(np.round(a, DIGITS).tolist()) for a in (body.alpha, body.alpha_r))
     return (body.reduced.unrotated[0], body.kernel, body.stiffening, *weights)
 
@@ -67,7 +67,7 @@ def many_alike(model: Mechanism) -> dict[str, Group]:
 
 
 def lanes_exist() -> bool:
-    """Whether bodies can be evaluated eight at a time at all."""
+    """Tell whether bodies can be evaluated eight at a time at all."""
     return not why_no_lanes()
 
 
@@ -95,14 +95,14 @@ def compile_together(name: str) -> None:
 
 
 def is_compiled_together(path: Path) -> bool:
-    """Whether the kernel of a file was compiled for eight bodies; the file is not imported."""
+    """Tell whether the kernel of a file was compiled for eight bodies; the file is not imported."""
     from sebody.kernels.lanes.kernel import is_compiled
 
     return is_compiled(path, (), matrices=True)
 
 
 def behind_row(body: Superelement, common: int, turn: int) -> list[int]:
-    """What index rows of equal bodies end with.
+    """End of the index rows of equal bodies.
 
     Parameters
     ----------

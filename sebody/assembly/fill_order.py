@@ -21,7 +21,7 @@ LARGE = 64              # bodies from which on threads may share an elimination
 
 
 class Coupling(NamedTuple):
-    """What couples DOF blocks: the equations of a joint, a spring."""
+    """Couplings of DOF blocks: the equations of a joint, a spring."""
 
     keys: Iterable[Hashable]        # of the DOF blocks
     multipliers: int = 0

@@ -30,5 +30,5 @@ def check_grounded(model: Mechanism) -> None:
 
 
 def _still(dof_block: DofBlock) -> bool:
-    """Whether nothing moves a DOF block, nor what it is rigidly linked to."""
+    """Tell whether nothing moves a DOF block, nor what it is rigidly linked to."""
     return all(one.fixed and not one.motions for one in dof_block.parents())

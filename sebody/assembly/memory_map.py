@@ -1,4 +1,4 @@
-"""What is stored from step to step beside unknowns, and its places in `State.frames`.
+"""Numbers that are stored from step to step beside unknowns, and their places in `State.frames`.
 
 Behind the frames of the superelements there is what elements keep; then, of every input, what was
 set and when; what sensors measured last; signals of controllers; their states.

@@ -154,7 +154,7 @@ def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, l
 
 
 def _coupled(model: Mechanism, last: dict[DofBlock, int]) -> dict[DofBlock, int]:
-    """Of every DOF block the last body it belongs to or is coupled to by a joint or spring."""
+    """Last body that each DOF block belongs to or is coupled to by a joint or spring."""
     last_bodies = dict(last)
     for element in (*model.constraints, *model.loads):
         keys = [p for p in parents(element.dof_blocks) if p in last]

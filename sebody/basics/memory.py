@@ -75,7 +75,7 @@ def _of_container() -> float:
 
 
 def _of_process() -> float:
-    """What a limit of the process's address space leaves (``ulimit -v``)."""
+    """Memory that a limit of the process's address space leaves (``ulimit -v``)."""
     try:
         import resource
 

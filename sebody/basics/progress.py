@@ -85,7 +85,7 @@ class Progress:
 @contextmanager
 def showing(progress: Callable[[float], None] | bool | None, t_end: float | None = None
             ) -> Iterator[Callable[[float], None] | None]:
-    """What is called during a run: a function, or a bar for True.
+    """Callback of a run: a function, or a bar for True.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _duration(seconds: float) -> str:
 
 
 def _notebook() -> Any:
-    """What displays in the notebook that the program runs in; None if it runs elsewhere."""
+    """Display of the notebook that the program runs in; None if it runs elsewhere."""
     shell = sys.modules.get("IPython")
     if shell is None or type(shell.get_ipython()).__name__ != NOTEBOOK:
         return None

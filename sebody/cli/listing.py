@@ -75,7 +75,7 @@ def _list_parameters(scene: str) -> None:
 
 
 def meanings_of(build: Callable) -> dict[str, str]:
-    """What the parameters of a function mean, by the section of its docstring (numpydoc)."""
+    """Meanings of the parameters of a function, by the section of its docstring (numpydoc)."""
     text = inspect.getdoc(build) or ""
     section = re.search(r"^Parameters\n-+\n(.*?)(?=^\S[^\n]*\n-+$|\Z)", text, re.M | re.S)
     meanings = {}

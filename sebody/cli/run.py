@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 class Outcome(NamedTuple):
-    """What there is after a run, also of one that failed or was interrupted."""
+    """Files and words after a run, also of one that failed or was interrupted."""
 
     result: "Result"
     written: list[str]      # lines that name the files

@@ -59,7 +59,7 @@ def build_scene(name: str, changes: Sequence[str]) -> "Scene":
 
 
 def checked_scene(scene: object, name: str) -> "Scene":
-    """What the `build` of a file returned, if that is a scene that can be run.
+    """Scene that the `build` of a file returned, if that is a scene that can be run.
 
     Raises
     ------

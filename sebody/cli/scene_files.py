@@ -14,7 +14,7 @@ REMEDY = "write 'def build() -> Scene' as in examples/hinged_beam.py"
 
 
 def is_file(scene: str) -> bool:
-    """Whether a scene is given as a file, not by its name."""
+    """Tell whether a scene is given as a file, not by its name."""
     return scene.endswith(".py")
 
 

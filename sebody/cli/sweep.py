@@ -105,7 +105,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _by_name(option: str, pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """What an option gives, each name once."""
+    """Values of an option, each name once."""
     by_name: dict[str, Any] = {}
     for name, value in pairs:
         if name in by_name:

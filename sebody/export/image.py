@@ -77,7 +77,7 @@ class Image:
 
     @property
     def packed(self) -> bytes:
-        """What is stored, compressed by deflate: most numbers of reduced bodies are zeros."""
+        """Stored bytes, compressed by deflate: most numbers of reduced bodies are zeros."""
         packer = compressobj(9, wbits=-MAX_WBITS)
         return packer.compress(self.stored) + packer.flush()
 
@@ -129,7 +129,7 @@ def _address(array: NDArray | np.record) -> int:
 
 
 def _holding(known: Iterable[NDArray | np.record], array: NDArray | np.record) -> bool:
-    """Whether an array is a part of one that is known."""
+    """Tell whether an array is a part of one that is known."""
     first = _address(array)
     return any(_address(one) <= first and first + array.nbytes <= _address(one) + one.nbytes
                for one in known)

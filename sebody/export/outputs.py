@@ -16,7 +16,7 @@ from sebody.results.tapes import States
 
 
 class Quantities:
-    """What compiled code evaluates of a model."""
+    """Outputs that compiled code evaluates of a model."""
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self._parts = model, numbering, system, state, state.now.copy()

@@ -117,7 +117,7 @@ class Prepared:
 
     @property
     def differentiable(self) -> bool:
-        """Whether outputs have derivatives by inputs: not where motions have no mass.
+        """Tell whether outputs have derivatives by inputs: not where motions have no mass.
 
         An input moves these in the next step, however short it is.
         """

@@ -40,7 +40,7 @@ class Values(Arrays):
 
 @dataclass(frozen=True, eq=False)
 class Settings:
-    """What parameters of a model set.
+    """Numbers that parameters of a model set.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Settings:
 
 
 def settings(run: Simulation, reading: Reading, names: list[str], outputs: Outputs) -> Settings:
-    """What follows from some parameters of a run's model: in its system, gravity and outputs.
+    """Numbers that follow from some parameters of a run's model: of system, gravity and outputs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What matrices, mass field, geometric stiffness and stresses of beam elements are made of."""
+"""Ingredients of matrices, mass field, geometric stiffness and stresses of beam elements."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ def beam_model(nodes: NDArray, groups: Sequence[BeamElements], pairs: NDArray, a
 
 
 def _materials(sections: Sequence[AnyStiffness]) -> list[Material]:
-    """What the sections are made of: EA over the mass a length is E over the density."""
+    """Materials of the sections: EA over the mass a length is E over the density."""
     speeds = {section.wave_speed: None for section in dict.fromkeys(sections)}
     return [Material("of a section", speed) for speed in speeds]
 

@@ -75,7 +75,7 @@ class BeamStress:
         return whole
 
     def restricted(self, place: NDArray, coordinates: NDArray) -> "BeamStress":
-        """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
+        """Restrict to elements whose nodes are kept: `place` has new numbers, -1 for others."""
         inside = np.all(place[self.nodes] >= 0, axis=1)
         return replace(self, nodes=place[self.nodes[inside]], forces=self.forces[inside],
                        fibres=self.fibres[inside], offsets=self.offsets[inside],

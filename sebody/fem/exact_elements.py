@@ -102,7 +102,7 @@ class Rule(NamedTuple):
 
     @property
     def uniform(self) -> bool:
-        """Whether all sections are the same."""
+        """Tell whether all sections are the same."""
         first = self.sections[0]
         return all(one is first or one == first for one in self.sections)
 

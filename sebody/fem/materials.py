@@ -60,7 +60,7 @@ def checked_materials(materials: Sequence[Material], what: str = "materials"
 
 
 def doubt(material: Material, units: Units | None) -> tuple[str, str] | None:
-    """What speaks against the numbers of a material, and the remedy; None if nothing does.
+    """Doubt about the numbers of a material, and the remedy; None if nothing does.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def doubt(material: Material, units: Units | None) -> tuple[str, str] | None:
 
 
 def doubts(materials: Iterable[Material], units: str) -> list[str]:
-    """What `doubt` says of materials, in sentences ``what; what to do``, each once."""
+    """Doubts about materials, in sentences ``what; what to do``, each once."""
     found = [doubt(Material(*one), parsed_units(units)) for one in materials]
     return [f"{text}; {remedy}" for text, remedy in dict.fromkeys(filter(None, found))]
 

@@ -1,4 +1,4 @@
-"""What an FE program hands over: matrices, node coordinates and the meaning of the DOFs."""
+"""FE models as programs hand them over: matrices, node coordinates, the meaning of the DOFs."""
 
 from __future__ import annotations
 

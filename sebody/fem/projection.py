@@ -15,7 +15,7 @@ _ROUNDS = 30        # of Gauss and Newton's iteration; flat faces with straight 
 
 def on_faces(points: NDArray, places: NDArray, faces: Sequence[tuple[str, NDArray]]
              ) -> sparse.csr_array:
-    """What makes the nearest point on the faces of each of some points: weights of the nodes.
+    """Weights of the nodes that make the nearest points on faces.
 
     Parameters
     ----------

@@ -134,7 +134,7 @@ class SolidPrestress:
         return result
 
     def _turning(self, moved: NDArray, basis: NDArray) -> NDArray:
-        """What `_of_turning` adds, of all prestresses on a basis: forces on tied nodes alone."""
+        """Matrices that `_of_turning` adds, of prestresses on a basis: forces on tied nodes."""
         k = moved.shape[1] // 3
         tied = np.zeros(self._count, dtype=bool)
         for _, nodes, _ in self._tied:
@@ -167,11 +167,11 @@ class SolidPrestress:
 
     @property
     def volume(self) -> float:
-        """Of all cells."""
+        """Volume of all cells."""
         return float(sum(volumes.sum() for _, _, volumes, _ in self._groups))
 
     def _stressed(self, displacement: NDArray) -> Iterator[tuple[NDArray, NDArray, NDArray]]:
-        """Of every group nodes (e, a), slopes and ``sigma_ij N_a,j`` times volume (e, g, a, 3)."""
+        """Nodes (e, a) of every group, slopes and ``sigma_ij N_a,j`` times volume (e, g, a, 3)."""
         moved = (self._motion @ displacement).reshape(-1, 3)
         for nodes, slopes, volumes, law in self._groups:
             gradients = np.einsum("egai,eak->egki", slopes, moved[nodes])   # u_k,i
@@ -181,7 +181,7 @@ class SolidPrestress:
             yield nodes, slopes, np.einsum("egij,egaj->egai", stresses, slopes)
 
     def _of_turning(self, forces: NDArray, shape: tuple[int, int]) -> sparse.csc_array:
-        """What forces on tied nodes do when these turn: ``(f r^T + r f^T) / 2 - f . r I``."""
+        """Stiffness of forces on tied nodes that turn: ``(f r^T + r f^T) / 2 - f . r I``."""
         rows, columns, entries = [], [], []
         for turns, nodes, arms in self._tied:
             moments = forces[nodes].T @ arms
@@ -223,7 +223,7 @@ def _stresses(derived: NDArray, volumes: NDArray, law: NDArray) -> NDArray:
 
 
 def knows(kind: str) -> bool:
-    """Whether there is a full integration of this kind of cell."""
+    """Tell whether there is a full integration of this kind of cell."""
     return kind in _RULES
 
 

@@ -104,7 +104,7 @@ class SolidStress:
         return (to_nodes @ values.reshape(n, g, c * s)).reshape(n, -1, c, s)
 
     def restricted(self, place: NDArray, coordinates: NDArray) -> SolidStress:
-        """Of the elements whose nodes are kept: `place` has their new numbers, -1 for others."""
+        """Restrict to elements whose nodes are kept: `place` has new numbers, -1 for others."""
         kept = np.all(place[self.nodes] >= 0, axis=1)
         law = self.elasticity if self.elasticity.ndim == 2 else self.elasticity[kept]
         return replace(self, nodes=place[self.nodes[kept]], coordinates=coordinates,
@@ -157,7 +157,7 @@ class StressModes:
             object.__setattr__(self, name, value)
 
     def restricted(self, place: NDArray, coordinates: NDArray) -> StressModes:
-        """Of the points that belong to kept nodes."""
+        """Restrict to the points that belong to kept nodes."""
         nodes = np.where(self.nodes < 0, -1, place[self.nodes])
         return StressModes(self.points[nodes >= 0], self.modes[nodes >= 0], nodes[nodes >= 0])
 

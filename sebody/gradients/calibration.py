@@ -229,7 +229,7 @@ class _Fit:
         return found
 
     def judged(self, x: NDArray) -> Calibration:
-        """What was found, with its covariance."""
+        """Result, with its covariance."""
         residuals, J = self.residuals(x), self.jacobian(x)
         scale = np.linalg.norm(J, axis=0)
         if (scale == 0).any():

@@ -6,7 +6,7 @@ from sebody.engine.state import Scheme
 
 
 class Coefficients(NamedTuple):
-    """Of generalized-alpha with a step h."""
+    """Coefficients of generalized-alpha with a step h."""
 
     h: float
     am: float

@@ -1,4 +1,4 @@
-"""What a recursion over steps carries, in columns, and the state of a step that it is put in."""
+"""Numbers that a recursion over steps carries, in columns, and the state of a step."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ PRODUCTS, INVERSES, SPENT, FRESH, GUESSES = range(5)    # places in `Columns.cou
 
 @dataclass(frozen=True, eq=False)
 class Columns(Arrays):
-    """What a recursion carries from step to step, of m columns and n unknowns.
+    """Numbers that a recursion carries from step to step, of m columns and n unknowns.
 
     ==========  ====================================================================================
     motion      (4, m, n) motion, rates, second rates and auxiliary ones, or bars of these

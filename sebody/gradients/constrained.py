@@ -84,7 +84,7 @@ class Sweep:
             see(event.number, Change(xi, v, a, self._forces(lost, mu)))
 
     def _lost(self) -> Lost:
-        """What is lost in the state that was evaluated last."""
+        """Motion that is lost in the state that was evaluated last."""
         linear = self.linear
         found = [one.at(linear.state) for one in self.each]
         whole, *others = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))

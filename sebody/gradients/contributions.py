@@ -1,4 +1,4 @@
-"""What every part of a model contributes to some quantities: modes and flexibility of its bodies,
+"""Contributions of every part of a model to some quantities: modes and flexibility of its bodies,
 by one run and one sweep for all, and their options, by a run each.
 """
 
@@ -46,7 +46,7 @@ class Simplification(NamedTuple):
 def contributions(model: Model, h: float, t_end: float, quantities: str | Iterable[str],
                   bodies: Iterable[str] | None = None, scheme: Scheme | None = None
                   ) -> Contributions:
-    """What modes, flexibility and options of each body contribute to some quantities.
+    """Contributions of modes, flexibility and options of each body to some quantities.
 
     The model runs once. Its equations, linearized along this run, then tell how it would move
     without each mode and with each body rigid: changes of first order, over all of the run. What

@@ -46,7 +46,7 @@ class Design:
     make: Callable[[NDArray], Sequence[ReducedBody]]
 
     def handle(self, model: Model) -> Handle:
-        """What sets the numbers of a model.
+        """Handle that sets the numbers of a model.
 
         Raises
         ------

@@ -116,7 +116,7 @@ def energy_rows(run: Simulation, places: list[int]) -> EnergyRows:
 
 
 def elastic(element: Element) -> bool:
-    """Whether the force of an element at rest is that of its strain energy."""
+    """Tell whether the force of an element at rest is that of its strain energy."""
     bare = element.time_function is None and element.function is None and element.law is None
     return bare and not element.multipliers and not element_kernel(element.kind).INERTIAL
 

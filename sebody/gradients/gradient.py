@@ -224,7 +224,7 @@ class _Part:
         return found
 
     def adding_to(self, found: NDArray, sizes: list[NDArray]) -> Callable[[int, NDArray], None]:
-        """What adds derivatives of states to those of objectives, and sizes of the motion."""
+        """Function that adds states' derivatives to those of objectives, and sizes of motion."""
         linear = self.course.linear
         extent = linear.system.magnitude[:linear.free, None]
 

@@ -31,7 +31,7 @@ ROOM = 8                    # rows that may be recorded in one step of a run
 
 
 class Past(NamedTuple):
-    """What was before a segment of a run."""
+    """State before a segment of a run."""
 
     kinds: NDArray      # (events,) as of a `History`, from the start to the first of the segment
     ends: NDArray
@@ -59,7 +59,7 @@ class History(NamedTuple):
 
     @property
     def times(self) -> NDArray:
-        """Of the recorded states."""
+        """Times of the recorded states."""
         return self.rows[self.recorded, RECORD_T]
 
     @property

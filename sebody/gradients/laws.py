@@ -48,7 +48,7 @@ COUNTED = ("angle",)        # what torsion springs keep to count turns, no force
 
 
 def keeps(kind: str) -> bool:
-    """Whether forces of a kind of element depend on what it keeps."""
+    """Tell whether forces of a kind of element depend on numbers that it keeps."""
     return element_kernel(kind).MEMORY not in ((), COUNTED)
 
 

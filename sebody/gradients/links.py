@@ -95,7 +95,7 @@ class Followers:
 
     def _matrix(self, numbers: NDArray, rows: NDArray, columns: NDArray, height: int, dense: bool
                 ) -> NDArray | sparse.csc_array:
-        """Of entries that add up."""
+        """Matrix of entries that add up."""
         shape = height, self.free
         if dense:
             return np.bincount(rows * self.free + columns, numbers, height * self.free).reshape(

@@ -111,7 +111,7 @@ class NodeStress:
 
 def node_stress(run: Simulation, quantity: str, linear: Linear, history: History
                 ) -> NodeStress | None:
-    """What a stress at an FE node is looked at by; None of other quantities."""
+    """Sensor of a stress at an FE node; None of other quantities."""
     recording = Recording(run.model, run.numbering, run.system, run.state, history.states, 0.0)
     whole, _ = split(recording, quantity)
     node, _, what = whole.rpartition(".")

@@ -92,7 +92,7 @@ class Folded:
         self.kinematic = all(form.kinematic for form in forms(run, outputs).values())
 
     def _folded(self, segments: Segments) -> bool:
-        """Whether values go on from segment to segment, as angles beyond a turn do not."""
+        """Fold values; tell whether they go on between segments, unlike angles beyond a turn."""
         run, times = segments.run, []
         last: dict[str, NDArray] = {}
         self._folds: dict[str, Fold] = {}
@@ -208,7 +208,7 @@ def labels_of(name: str, shape: tuple[int, ...]) -> list[str]:
 
 def sensor_of(run: Simulation, quantity: str, shape: tuple[int, ...], linear: Linear,
               history: History) -> Sensor:
-    """What a quantity is looked at by."""
+    """Sensor of a quantity."""
     if run.system.regularized[0] and ".multipliers" in quantity:
         raise InputError(f"{quantity!r}: the model has redundant constraints, whose multipliers "
                          "are not unique and have no derivative: give force or moment of the joint")

@@ -22,7 +22,7 @@ class Column(NamedTuple):
 
     @property
     def design(self) -> bool:
-        """Whether bodies are made anew."""
+        """True where bodies are made anew."""
         return bool(self.bodies)
 
 

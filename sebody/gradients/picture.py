@@ -20,7 +20,7 @@ LEAST = 1e-6        # of the largest bar: shorter ones are drawn like this
 
 
 def draw(found: Any, path: str | Path) -> Path:
-    """Of `Contributions`, a row for each quantity: bars of the largest, histories of some; PNG."""
+    """Draw `Contributions`, each quantity in a row: bars of the largest, some histories; PNG."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

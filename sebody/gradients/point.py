@@ -40,7 +40,7 @@ class Point:
 
     @property
     def labels(self) -> list[str]:
-        """Of the numbers."""
+        """Labels of the numbers."""
         return [column.label for column in self.columns]
 
     @contextmanager

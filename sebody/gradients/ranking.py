@@ -36,13 +36,13 @@ class Contribution:
 
     @property
     def large(self) -> bool:
-        """Whether the change is so large that an estimate of first order tells its size alone."""
+        """True where the change is so large that first order tells its size alone."""
         return bool(self.sizes.max() > LARGE)
 
 
 @dataclass(frozen=True, eq=False)
 class Contributions:
-    """What parts of a model contribute to some quantities.
+    """Contributions of the parts of a model to some quantities.
 
     Attributes
     ----------
@@ -124,7 +124,7 @@ class Contributions:
 
 
 def _remark(size: float, step: float) -> str:
-    """What a change is that is told by first order but roughly."""
+    """Remark on a change that first order tells but roughly."""
     return " (large)" if size > LARGE else " (below the step)" if size < step else ""
 
 

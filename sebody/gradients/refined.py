@@ -124,7 +124,7 @@ class Refined:
 
 
 def _missing(A: NDArray) -> NDArray:
-    """What makes the singular matrix of redundant constraints regular, and solutions nearly least.
+    """Addend that makes the singular matrix of redundant constraints regular, and solutions least.
 
     Its null vectors times those of its transpose: solutions have no part along the former, if the
     right side has none along the latter. They are good enough for later steps, too.

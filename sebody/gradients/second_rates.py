@@ -19,7 +19,7 @@ STEP = 1e-3         # of differences, of the size of a coordinate or in radians
 
 
 def second_rates(linear: Linear, fixed: NDArray) -> tuple[NDArray, NDArray]:
-    """Of the state that `linear` was evaluated in last, (multipliers, n) each."""
+    """Second rates of the state that `linear` was evaluated in last, (multipliers, n) each."""
     state, system, n = linear.state, linear.system, linear.free
     by_motion, by_rates = np.zeros((2, int(fixed.sum()), n))
     if not fixed.any():

@@ -22,7 +22,7 @@ NUMBERS = 64.0      # bytes of an event that are kept of the whole run: its time
 
 
 class Begin(NamedTuple):
-    """Of a segment."""
+    """Beginning of a segment."""
 
     state: list[NDArray]    # copies of the run's
     most: int | None        # events of the segment; None: to the end of the run

@@ -103,7 +103,7 @@ class Evaluated:
 
 def smoothly(run: Simulation, quantity: str, size: int, linear: Linear, history: History
              ) -> Followed | Evaluated:
-    """What a smooth quantity is looked at by: its tape, or differences."""
+    """Sensor of a smooth quantity: its tape, or differences."""
     try:
         return Followed(run, quantity, linear, history)
     except NoTape:
@@ -158,7 +158,7 @@ class RotationVector:
 
 def rotation_vector(run: Simulation, quantity: str, linear: Linear, history: History
                     ) -> RotationVector | None:
-    """What a component or the length of a rotation vector is looked at by; None of others."""
+    """Sensor of a component or the length of a rotation vector; None of other quantities."""
     base, _, component = quantity.rpartition(".")
     if component not in (*AXES, NORM):
         return None

@@ -1,4 +1,4 @@
-"""What simplified models lose of the motion.
+"""Motion that simplified models lose.
 
 A body that is made rigid, and one without a mode, move like the full one under constraints
 ``e = 0`` of what they lose: the amplitude of a mode, or all of a body's deformation. With the rigid
@@ -26,7 +26,7 @@ from sebody.results import rotations
 
 
 class Part(NamedTuple):
-    """What a simplified model loses of the motion in a state: (24)."""
+    """Motion that a simplified model loses in a state: (24)."""
 
     E: NDArray          # (total, k) of all coordinates
     e: NDArray          # (k,)

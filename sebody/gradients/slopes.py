@@ -1,4 +1,4 @@
-"""What a parameter changes: of the residuals of all events in states that are held, of the start,
+"""Derivatives by a parameter: of the residuals of all events in states that are held, of the start,
 and of objectives beside what the motion changes.
 
 The model is built with four values of the parameter, and evaluated in the recorded states: of

@@ -87,7 +87,7 @@ def _blocks(parts: list[list[Matrix]]) -> Matrix:
 
 
 class Second(NamedTuple):
-    """What the second residuals of the events of a history are made with."""
+    """Numbers that the second residuals of the events of a history are made with."""
 
     by_rates: NDArray       # (events,) cd of the steps
     by_seconds: NDArray     # (events,) cm
@@ -98,7 +98,7 @@ class Second(NamedTuple):
 
 
 class Ahead(NamedTuple):
-    """What a restart sees a short time later."""
+    """State that a restart sees a short time later."""
 
     dt: float
     turns: Turns

@@ -24,7 +24,7 @@ def course_of(run: Simulation, linear: Linear, history: History) -> Course:
 
 
 class StabilizedCourse(Course):
-    """Of index 2: unknowns are increments and shifts, see `stabilized`."""
+    """Course of index 2: unknowns are increments and shifts, see `stabilized`."""
 
     def __init__(self, run: Simulation, linear: Linear, history: History):
         super().__init__(run, linear, history)

@@ -53,7 +53,7 @@ def fitted_rates(made: Simulation) -> NDArray:
 
 
 def _is_driven(made: Simulation) -> bool:
-    """Whether drives start with a speed: bodies then start in rigid-body motion."""
+    """Tell whether drives start with a speed: bodies then start in rigid-body motion."""
     ports = {int(port) for port in made.system.prescribed[:, 1]} | {
         made.numbering.ports[one] for joint in made.model.joints for one in joint.constraints
         if one.time_function is not None}

@@ -26,7 +26,7 @@ class Bars(NamedTuple):
 
 
 class Seeds(Protocol):
-    """What objectives say of the states of events."""
+    """Derivatives of objectives by the states of events."""
 
     def at(self, event: int) -> Bars | None:
         """Derivatives of all objectives by the state that an event leaves."""
@@ -112,7 +112,7 @@ def _over_step(course: Course, event: Event, slopes: NDArray, now: Motion) -> Mo
 
 
 def _of_restart(course: Course, event: Event, xi: NDArray, v: NDArray, kept: Motion) -> NDArray:
-    """What motion and rates change of the residual of a restart, and what laws have kept before."""
+    """Change of a restart's residual by motion and rates, and by what laws have kept before."""
     if course.kept:
         found = course.along(event.number, xi, v, *kept[1:])[0]
     else:

@@ -218,7 +218,7 @@ class Entries(NamedTuple):
 
     @property
     def by_number(self) -> bool:
-        """Whether the file is of FORMAT=COORDINATE, which names no nodes."""
+        """Tell whether the file is of FORMAT=COORDINATE, which names no nodes."""
         return self.rows.shape[1] == 3
 
     @property

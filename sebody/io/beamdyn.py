@@ -68,7 +68,7 @@ class Blade:
 
     @property
     def mass(self) -> float:
-        """Of the blade [mass]."""
+        """Mass of the blade [mass]."""
         at, stations = self.section.places, self.section.sections
         masses = np.array([one.mass[0, 0] for one in stations])
         return float(self.axis.length * np.sum((masses[1:] + masses[:-1]) / 2 * np.diff(at)))

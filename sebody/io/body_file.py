@@ -46,7 +46,7 @@ _REMEDY = "give one written by 'sebody import' or sebody.io.save_body"
 
 @dataclass(frozen=True, eq=False)
 class BodyFile:
-    """What a body file holds, as found: the matrices may be wrong in any way.
+    """Contents of a body file, as found: the matrices may be wrong in any way.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class BodyFile:
 
     @property
     def cautions(self) -> list[str]:
-        """What the body lacks, and materials of other units: ``what; what to do``."""
+        """Lacks of the body, and materials of other units: ``what; what to do``."""
         parts = self.parts
         stressed = parts.get("recovery") is not None and bool(parts["recovery"].stress)
         missing = lacks(stressed, parts.get("invariants") is not None, parts.get("missing", {}))
@@ -191,7 +191,7 @@ def write_body_file(file: BodyFile, path: str | Path) -> Path:
 
 
 def read_body_file(path: str | Path) -> BodyFile:
-    """What a body file holds, without a check of its matrices.
+    """Contents of a body file, without a check of its matrices.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
 
 
 def _restored(value: Any, arrays: dict[str, NDArray]) -> Any:
-    """What `_named` was given; lists as tuples, however deep."""
+    """Arguments that `_named` was given; lists as tuples, however deep."""
     if isinstance(value, list):
         return tuple(_restored(one, arrays) for one in value)
     if isinstance(value, dict) and "array" in value:

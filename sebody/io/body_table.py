@@ -1,4 +1,4 @@
-"""What a body file holds: its notes, and the members with their types and shapes."""
+"""Contents of a body file: its notes, and the members with their types and shapes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any

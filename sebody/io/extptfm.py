@@ -113,14 +113,14 @@ def write_extptfm(body: ReducedBody, path: str | Path, series: LoadSeries | None
 
 
 def read(path: Path) -> Reading:
-    """What the files say, for `sebody.io.import_body`; see `read_held`."""
+    """Contents of the files, for `sebody.io.import_body`; see `read_held`."""
     held = read_held(path)
     notes = {"not read": "; ".join(held.notes)} if held.notes else {}
     return Reading(held, source=f"ExtPtfm {held.path.name}", notes=notes)
 
 
 def read_held(path: Path) -> HeldBody:
-    """What a file of any of the forms holds.
+    """Contents of a file of any of the forms.
 
     Raises
     ------
@@ -139,7 +139,7 @@ def read_held(path: Path) -> HeldBody:
 
 
 def _of_input_file(path: Path, lines: list[str]) -> HeldBody:
-    """What the file that an ExtPtfm.dat names holds, with the modes that it keeps."""
+    """Contents of the file that an ExtPtfm.dat names, with the modes that it keeps."""
     found = {words[1]: (number, words[0].strip("\"'")) for number, line in enumerate(lines, 1)
              if len(words := _words(line)) > 1}
     _, name = found["Red_FileName"]

@@ -36,7 +36,7 @@ class Block(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class HeldBody:
-    """What a file holds, without the place of its interface.
+    """Contents of a file, without the place of its interface.
 
     Parameters
     ----------

@@ -119,7 +119,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
 
 
 class Wanted(NamedTuple):
-    """What is to be made of the files, see `import_body`."""
+    """Request of what to make of the files, see `import_body`."""
 
     interfaces: list[Interface]
     modes: int | Accuracy = 0
@@ -133,7 +133,7 @@ class Wanted(NamedTuple):
 
 def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
              ) -> BodyFile:
-    """What is to be written of a reading."""
+    """Body that is to be written of a reading."""
     model, units = reading.model, str(parsed_units(wanted.units) or "")
     if not isinstance(model, FEModel):
         return _damped(_grounded(_reduced(reading, wanted.interfaces, wanted.modes, units),

@@ -260,7 +260,7 @@ def _middle(model: FEModel, middle: Middle | None, nodes: tuple[int, ...], one: 
 
 def _described(model: FEModel, one: Interface, nodes: tuple[int, ...], left: list[int],
                middle: Middle | None) -> str:
-    """What an interface is, for the provenance of the body."""
+    """Description of an interface, for the provenance of the body."""
     how = {"rbe2": "rigid face of", "rbe3": "mean by area of", "rbe3-equal": "mean of"}[one.tie]
     text = f"{how} {len(nodes)} nodes"
     if one.point:

@@ -89,7 +89,7 @@ class LoadSeries:
         return f"<LoadSeries: {self.described()}>"
 
     def described(self) -> str:
-        """What it is, in a few words."""
+        """Description in a few words."""
         return (f"{counted(len(self.names), 'column')}, {counted(len(self.t), 'row')}, t = "
                 f"{self.t[0]:.6g} to {self.t[-1]:.6g}, {self.interpolation}")
 

@@ -22,7 +22,7 @@ class ModalNode(NamedTuple):
 
     @property
     def turns(self) -> bool:
-        """Whether the modes turn it; shapes of zeros are those of a node without rotations."""
+        """Tell whether the modes turn it; shapes of zeros are those of a node without rotations."""
         return bool(np.any(self.psi))
 
 
@@ -86,7 +86,7 @@ class ModalBody(NamedTuple):
         return np.hstack([rigid_motions(points, keeps, len(modes), np.zeros(3)), modes])
 
     def _scale(self, points: NDArray) -> NDArray:
-        """Of rigid motions and modes, so that all have the same unit."""
+        """Scale of rigid motions and modes, so that all have the same unit."""
         length = float(np.ptp(points, axis=0).max()) or 1.0
         kinetic = np.sqrt(np.diag(self.mass)[0] * length**2)
         masses = np.sqrt(np.diag(self.mass)[6:].clip(np.finfo(float).tiny))

@@ -175,7 +175,7 @@ def _check_systems(parts: dict, basic: dict, nodes: list[int], path: Path) -> No
 
 
 def _is_free(parts: dict) -> bool:
-    """Whether a reduced stiffness resists no rigid motion."""
+    """Tell whether a reduced stiffness resists no rigid motion."""
     points, K = parts["coordinates"], parts["stiffness"]
     rigid = rigid_motions(points, parts["keeps"], len(K), points.mean(axis=0))
     names = coordinate_names(parts["keeps"], 3, parts["modes"])

@@ -1,4 +1,4 @@
-"""What the reader of a source returns."""
+"""Reading that the reader of a source returns."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

@@ -84,7 +84,7 @@ def _left_out(matrices: Mapping[str, NDArray], place: dict[tuple[int, int], int]
 
 
 def _note(left: Sequence[tuple[int, int]]) -> dict[str, str]:
-    """What was left out, in words."""
+    """Omissions, in words."""
     if not left:
         return {}
     shown = [f"{'rotations' if first else 'translations'} of node {label}" for label, first in left]

@@ -73,7 +73,7 @@ _HEAD = 4000        # characters in which a sign is looked for
 
 
 def read_source(path: str | Path, kind: str | None = None) -> Reading:
-    """What the files of an FE program say.
+    """Contents of the files of an FE program.
 
     Parameters
     ----------

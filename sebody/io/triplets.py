@@ -119,7 +119,7 @@ def symmetric(rows: NDArray, columns: NDArray, values: NDArray, size: int) -> sp
 
 
 def _overlap(rows: NDArray, columns: NDArray, size: int) -> bool:
-    """Whether any two places are mirror images."""
+    """Tell whether any two places are mirror images."""
     above, below = rows < columns, rows > columns
     if not (above.any() and below.any()):
         return False

@@ -1,1 +1,1 @@
-"""What a user builds; nothing here is compiled."""
+"""Models as users build them; nothing here is compiled."""

@@ -12,7 +12,7 @@ FORCES = ("coincident", "coincident_ground", "on_line")      # their multipliers
 
 
 def has_forces(joint: Joint) -> bool:
-    """Whether a joint has multipliers that are its force."""
+    """Tell whether a joint has multipliers that are its force."""
     return any(c.kind.removeprefix("planar_") in FORCES for c in joint.constraints)
 
 
@@ -71,7 +71,7 @@ def _side(model: Mechanism, start: Node, end: Node, connections: list[Connection
 
 
 def _linked(side: list[Node], connections: list[Connection]) -> bool:
-    """Whether one of some nodes is at the end of a rigid link from a node elsewhere."""
+    """Tell whether one of some nodes is at the end of a rigid link from a node elsewhere."""
     return any(c.to is not None and c.node in side and c.to.position is not c.node.position
                for c in connections)
 

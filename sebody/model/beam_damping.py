@@ -156,7 +156,7 @@ def _frequencies(piece: StraightPiece | AxisPiece, coupled: bool, held: str, num
 
 
 def _frequency(K: NDArray, M: NDArray, axes: dict[str, NDArray], held: str, number: int) -> float:
-    """Of one kind of motion of a whole beam, held at its ends."""
+    """Frequency of one kind of motion of a whole beam, held at its ends."""
     columns = [np.linalg.svd(axes[kind])[0][:, :round(np.trace(axes[kind]))]
                for kind in ("position", "rotation")]
     d, turns = len(axes["position"]), len(axes["rotation"])

@@ -33,7 +33,7 @@ class StraightPiece(NamedTuple):
     elements: int
 
     def fe_model(self) -> FEModel:
-        """Of equal elements."""
+        """FE model of equal elements."""
         first, last = np.zeros((2, 2 if self.planar else 3))
         last[0] = self.length
         return (planar_beam(first, last, self.section, self.elements) if self.planar else
@@ -50,7 +50,7 @@ class AxisPiece(NamedTuple):
     elements: int
 
     def fe_model(self) -> FEModel:
-        """Of elements that are equally long."""
+        """FE model of elements that are equally long."""
         return beam_along(self.axis, self.section,
                           np.linspace(self.first, self.last, self.elements + 1))
 
@@ -79,13 +79,13 @@ class Course(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Of the whole beam."""
+        """Length of the whole beam."""
         return (float(np.linalg.norm(self.ends[1].point - self.ends[0].point))
                 if self.axis is None else self.axis.length)
 
     @property
     def coupled(self) -> bool:
-        """Whether tension, torsion and bending need not be independent."""
+        """Tell whether tension, torsion and bending need not be independent."""
         return self.axis is not None or isinstance(section_at(self.section, 0.5), GeneralSection)
 
     @property

@@ -215,7 +215,7 @@ def _inside(model: Mechanism, point: BodyPoint, called: str, on: Surface, radius
 
 
 def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, float]:
-    """What a stop measures: in words, its kernel, places and constants, and its value now."""
+    """Measure of a stop: in words, its kernel, places and constants, and its value now."""
     if isinstance(of, tuple | list):
         if len(of) != 2:
             raise inputs.refusal("stop", of, "give a joint or two nodes")

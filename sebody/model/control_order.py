@@ -83,5 +83,5 @@ def actuators(model: Mechanism) -> dict[str, object]:
 
 
 def is_actuator(model: Mechanism, name: str) -> bool:
-    """Whether an actuator has this name."""
+    """Tell whether an actuator has this name."""
     return name in actuators(model)

@@ -1,4 +1,4 @@
-"""What closes a loop: sensors, and controllers with what they are given and what they set."""
+"""Parts that close a loop: sensors, and controllers with what they are given and what they set."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

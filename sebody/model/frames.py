@@ -67,7 +67,7 @@ def default_frame(body: ReducedBody, inertia: str | None) -> str:
 
 
 def mass_off_line(body: ReducedBody) -> bool:
-    """Whether the mass of a body is off the line of its nodes, so that it is not straight.
+    """Tell whether the mass of a body is off the line of its nodes, so that it is not straight.
 
     Then the centre of mass is off this line, or the line is no principal axis of inertia, or the
     radius of gyration about it is large. In a plane only the centre of mass is known.

@@ -182,7 +182,7 @@ def _joint(model: Mechanism, joint: Joint | str) -> Joint:
 
 
 def _sliding(joint: Joint) -> bool:
-    """Whether measures are lengths alone."""
+    """Tell whether measures are lengths alone."""
     if joint.kind == "drive":
         return "slide" in joint.constraints[0].kind
     return joint.kind in SLIDING
@@ -219,7 +219,7 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
 
 
 def turning(axes: Axes) -> dict[str, float | NDArray]:
-    """What the angle about the first of some axes is read from."""
+    """Source of the angle about the first of some axes."""
     return _seen(axes.columns[:, 0], axes.columns[:, 1])
 
 

@@ -123,7 +123,7 @@ def compiled_derivatives(function: Callable[..., None], name: str,
 
 
 def source(function: Callable) -> Source:
-    """What is compiled of a function; functions of the same code and values share machine code."""
+    """Source that is compiled; functions of the same code and values share machine code."""
     return Source(compiled_from(function), compilable(function))
 
 
@@ -185,7 +185,7 @@ def rebuilt(function: Callable, replaced: Callable[[object], object]) -> Callabl
 
 def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...]
             ) -> Callable:
-    """What a user gave as a function that is written in Python and has these arguments.
+    """A function of a user that is written in Python and has these arguments.
 
     Messages begin with `what` it is or, of a function, with how it is `named`.
     """
@@ -207,7 +207,7 @@ def _python(function: Callable, what: str, named: str, arguments: tuple[str, ...
 
 
 def _remembered(made: UserFunction, function: Callable) -> UserFunction:
-    """What was compiled, with the function as its user wrote it and what it was compiled with."""
+    """Compiled code, with the function as its user wrote it and what it was compiled with."""
     made.function, made.read = function, values_read(function)
     made.interpreted = interpretable(function)
     return made

@@ -59,7 +59,7 @@ def best_inertia(body: ReducedBody, frame: str) -> str:
 
 
 def needs_damped_kernel(body: ReducedBody, inertia: str) -> bool:
-    """Whether the body is damped and the kernels of its option are not for both kinds."""
+    """Tell whether the body is damped and the kernels of its option are not for both kinds."""
     return body.damping is not None and not options.INERTIA_OPTIONS[inertia].rates
 
 

@@ -1,4 +1,4 @@
-"""What a user builds: nodes made of DOF blocks, superelements on them, joints and loads.
+"""A model as a user builds it: nodes made of DOF blocks, superelements on them, joints and loads.
 
 A node is a position block and a rotation block, two separate blocks of unknowns. Bodies that
 share a position DOF block have a spherical joint between them without a multiplier, and a fixed
@@ -59,7 +59,7 @@ class Model(Mechanism):
         return f"<{summary(self)}>"
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return f"<p>{escape(summary(self))}</p>" + "".join(
             f"<details><summary>{escape(title)}</summary>{rows}</details>"
             for title, rows in model_tables(self))

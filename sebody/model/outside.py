@@ -1,4 +1,4 @@
-"""What functions of users read from outside: global and enclosing variables, defaults, helpers.
+"""Values that users' functions read: global and enclosing variables, defaults, helpers.
 
 Numba compiles the values in. Names whose values it cannot compile in are refused with the remedy
 (`refuse`), and a run is refused once a value is no longer what it was (`changed`): a function that
@@ -45,7 +45,7 @@ class Read(NamedTuple):
 
 
 class Code(NamedTuple):
-    """What a function does, comparable."""
+    """Code of a function, comparable."""
 
     instructions: bytes
     names: tuple[str, ...]
@@ -59,7 +59,7 @@ class Code(NamedTuple):
 
 
 def values_read(function: Callable) -> dict[str, object]:
-    """What a function computes with: its code, and copies of what it and its helpers read."""
+    """Everything a function computes with: its code, and copies of what it and its helpers read."""
     read: dict[str, object] = {"its code": Code.of(function.__code__)}
     for one in _reads(function):
         read[one.said] = (Code.of(one.value.__code__) if is_helper(one.value) else
@@ -74,7 +74,7 @@ def compiled_from(function: Callable) -> Hashable:
 
 
 def _identity(value: object) -> Hashable:
-    """What is equal for values that are compiled to the same code."""
+    """A key that is equal for values that are compiled to the same code."""
     if is_helper(value):
         return value.__code__
     if isinstance(value, np.ndarray):
@@ -136,13 +136,13 @@ def refuse(function: Callable, what: str) -> None:
 
 
 def is_helper(value: object) -> TypeGuard[FunctionType]:
-    """Whether a value is a function written in Python that is no library's."""
+    """Tell whether a value is a function written in Python that is no library's."""
     return isinstance(value, FunctionType) and (
         (value.__module__ or "").partition(".")[0] not in LIBRARIES)
 
 
 def _is_object(value: object) -> bool:
-    """Whether a value is a class of a user, or an instance of one."""
+    """Tell whether a value is a class of a user, or an instance of one."""
     kind = value if isinstance(value, type) else type(value)
     return not issubclass(kind, Enum) and kind.__module__.partition(".")[0] not in LIBRARIES
 
@@ -185,7 +185,7 @@ def defaults(function: Callable) -> dict[str, object]:
 
 
 def _resolved(path: tuple[str, ...], names: Mapping[str, object]) -> tuple[str, object, str]:
-    """Of a name and attributes of it: the name with its modules, its value, the next attribute."""
+    """Name with its modules, value and next attribute, of a name and attributes of it."""
     name, value = path[0], names.get(path[0], ABSENT)
     for attribute in path[1:]:
         if not isinstance(value, ModuleType):

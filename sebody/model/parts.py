@@ -1,4 +1,4 @@
-"""What a mechanism is made of: blocks and nodes, bodies, the elements and joints between them."""
+"""Parts of a mechanism: blocks and nodes, bodies, the elements and joints between them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -51,7 +51,7 @@ class DofBlock:
 
     @property
     def solved(self) -> bool:
-        """Whether its coordinates are unknowns."""
+        """Tell whether its coordinates are unknowns."""
         return not self.fixed and self.root is None
 
     def parents(self) -> list["DofBlock"]:
@@ -60,7 +60,7 @@ class DofBlock:
 
     @property
     def state(self) -> str:
-        """Whether its coordinates are unknowns, and why not."""
+        """Words for whether its coordinates are unknowns, and why not."""
         if self.root is not None:
             return "follows by a rigid link"
         if self.motions:
@@ -229,7 +229,7 @@ class OnPath(NamedTuple):
 
 
 class LawParts(NamedTuple):
-    """What makes an element of a continuous controller."""
+    """Parts of the element of a continuous controller."""
 
     controller: str
     states: DofBlock                        # hidden: its velocities are the states

@@ -137,7 +137,7 @@ def coordinate_vectors(body: ReducedBody, nodes: list[str]) -> dict[str, NDArray
 
 
 def _targets(placed: Superelement) -> dict[str, NDArray]:
-    """What columns may act on, by name."""
+    """Targets of columns, by name."""
     body, nodes = placed.reduced, [node.name for node in placed.nodes]
     vectors = coordinate_vectors(body, nodes)
     others = [name for k, name in enumerate(nodes) if k != body.base]

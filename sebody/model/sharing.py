@@ -21,7 +21,7 @@ def hold(model: Mechanism, node: Node, kind: str) -> DofBlock:
 
 
 def can_share(one: DofBlock, other: DofBlock) -> bool:
-    """Whether two DOF blocks can be one: at most one of them is fixed or follows another node.
+    """Tell whether two DOF blocks can be one: at most one of them is fixed or follows another node.
 
     Two that are fixed at one place and not moved are one already. One that follows the other by
     links closes a loop.

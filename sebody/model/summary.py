@@ -112,7 +112,7 @@ def _rates(node: Node) -> str:
 
 
 def _state(first: dict[DofBlock, str], node: Node, dof_block: DofBlock | None) -> str:
-    """Whether the coordinates of a node are unknowns, and why not."""
+    """Tell whether the coordinates of a node are unknowns, and why not."""
     if dof_block is None:
         return "none"
     owner = first.setdefault(dof_block, node.name)

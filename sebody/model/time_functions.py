@@ -119,7 +119,7 @@ class TimeFunction:
                      for i in range(COEFFICIENTS)), (A, w, p + w * x)
 
     def described(self) -> str:
-        """What it is, in a few words."""
+        """Description in a few words."""
         if self.is_input:
             return f"input, {self.pieces[0][0]:.6g} at the start"
         if self.functions:
@@ -222,7 +222,7 @@ def _less(function: UserFunction, value: float) -> UserFunction:
 
 
 def _jumps(function: Callable[[float], float], t: float) -> bool:
-    """Whether a function jumps at a time: by more than it changes as near to it."""
+    """Tell whether a function jumps at a time: by more than it changes as near to it."""
     d = NEAR * abs(t)
     values = [function(t + x) for x in (-2.0 * d, -d, d, 2.0 * d)]
     beside = abs(values[1] - values[0]) + abs(values[3] - values[2])

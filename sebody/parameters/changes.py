@@ -52,7 +52,7 @@ class Handle:
 
     @property
     def whole(self) -> bool:
-        """Whether the values are objects."""
+        """Tell whether the values are objects."""
         return not isinstance(self.base, np.ndarray)
 
     def part(self, components: int | list[int]) -> "Handle":

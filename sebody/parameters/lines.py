@@ -83,6 +83,6 @@ def _step(handle: Handle) -> NDArray:
 
 
 def _equal(one: NDArray, other: NDArray, *numbers: NDArray) -> bool:
-    """Whether two changes are the same but for rounding of the numbers that changed."""
+    """Tell whether two changes are the same but for rounding of the numbers that changed."""
     size = max(np.abs(n).max(initial=0.0) for n in numbers)
     return bool((np.abs(one - other) <= LINEAR * size).all())

@@ -55,7 +55,7 @@ class Kind(NamedTuple):
 
 
 def handle(model: Model, name: str) -> Handle:
-    """What a name refers to.
+    """Object that a name refers to.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def refused(model: Model, found: Mapping[str, Handle], values: Mapping[str, Any]
 
 def checked_values(model: Model, parameters: Mapping[str, Any]
                    ) -> tuple[dict[str, Found], dict[str, Any], int]:
-    """What some names are of, checked values of each, and the number of runs.
+    """Owners of some names, checked values of each, and the number of runs.
 
     Raises
     ------

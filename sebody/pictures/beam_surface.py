@@ -92,7 +92,7 @@ def _cap(outline: NDArray) -> NDArray:
 
 
 def _is_ear(a: NDArray, b: NDArray, c: NDArray, others: list[NDArray], normal: NDArray) -> bool:
-    """Whether the corner b is convex and no other corner lies in the triangle."""
+    """Tell whether the corner b is convex and no other corner lies in the triangle."""
     def side(p: NDArray, q: NDArray, r: NDArray) -> float:
         return np.cross(q - p, r - q) @ normal
     return side(a, b, c) > 0 and not any(

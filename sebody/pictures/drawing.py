@@ -77,7 +77,7 @@ def plot(results: Result | Mapping[str, Result] | Sequence[Result], *quantities:
 
 
 def overview(result: Result) -> list[str]:
-    """What is drawn when nothing is named: motion, energies and a force or amplitudes."""
+    """Quantities that are drawn when none is named: motion, energies, a force or amplitudes."""
     known = set(names(result))
     moving = _largest(result, "position", known)
     turning = _largest(result, "angular_velocity", known)

@@ -51,7 +51,7 @@ class DrawnBody(NamedTuple):
 
     @property
     def rigid(self) -> bool:
-        """Whether it has no FE nodes, and so no displacements of its own."""
+        """Tell whether it has no FE nodes, and so no displacements of its own."""
         return self.labels is None
 
 

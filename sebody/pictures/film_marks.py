@@ -22,7 +22,7 @@ SHAPES = {"ground": ("^", GROUND), "drive": ("o", DRIVE), "mass": ("o", JOINT)}
 
 
 class Marks:
-    """What is drawn besides bodies, moved from picture to picture."""
+    """Marks that are drawn besides bodies, moved from picture to picture."""
 
     def __init__(self, axes: "Axes", drawn: Scenery, eye: Eye) -> None:
         self._drawn, self._eye, self._axes = drawn, eye, axes

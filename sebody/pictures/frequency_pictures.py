@@ -31,7 +31,7 @@ GROWING = "#c0392b"     # colour of what grows
 
 
 class Diagram(NamedTuple):
-    """What a Campbell diagram shows; see `Campbell`."""
+    """Contents of a Campbell diagram; see `Campbell`."""
 
     speeds: NDArray     # (m,)
     omega: NDArray      # (m, count), likewise the next

@@ -1,4 +1,4 @@
-"""What pictures and animations show of themselves in a notebook, as the last value of a cell."""
+"""Pictures and animations as a notebook shows them, as the last value of a cell."""
 
 import base64
 import html

@@ -68,7 +68,7 @@ def _most_frames(result: Result) -> int:
 
 
 def _header(blocks: Blocks, result: Result, drawn: Scenery) -> dict:
-    """What the page reads: lengths / characteristic length, places from the middle."""
+    """Header that the page reads: lengths / characteristic length, places from the middle."""
     places = seen_places(drawn)
     measure = Measure(extent(drawn.nodes), (places.min(axis=0) + places.max(axis=0)) / 2)
     fields = colourings(drawn.bodies, drawn.units)

@@ -95,7 +95,7 @@ def audit_table(findings: list[Finding]) -> str:
 
 
 def _warnings(result: Result) -> str:
-    """What the run has warned of; each names its remedy."""
+    """Warnings of the run; each names its remedy."""
     said = [*([result.failure] if result.failure else []), *result.warnings,
             *result.cautions]
     said += [f"bodies {', '.join(bodies)} use a general kernel: for a faster, specific kernel run "

@@ -1,4 +1,4 @@
-"""What a picture of a moving model shows: bodies, nodes, joints, contact surfaces and loads."""
+"""Contents of a picture of a moving model: bodies, nodes, joints, contact surfaces and loads."""
 
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ FLAT = 0.03             # share of the largest extent below which a motion is in
 
 
 class Entry(NamedTuple):
-    """What is listed as one body: a body, or all parts of a beam."""
+    """An entry in the list of bodies: a body, or all parts of a beam."""
 
     name: str
     rigid: bool

@@ -1,4 +1,4 @@
-"""What a surface is made of, and what is computed for every surface."""
+"""Parts of a surface, and numbers that are computed for every surface."""
 
 from typing import NamedTuple
 

@@ -131,7 +131,7 @@ class Balance:
                 for kind, own in self._kept.items() if own}
 
     def _by_connection(self, kind: str, k: int) -> list[Number]:
-        """What a connection passes to its node."""
+        """Force or moment that a connection passes to its node."""
         if (kind, k) not in self._passed:
             total: list[Number] = [0.0] * self._size(kind)
             for node, weight in self._systems[kind].weights(k):
@@ -140,7 +140,7 @@ class Balance:
         return self._passed[kind, k]
 
     def _on_node(self, node: Node, kind: str) -> list[Number]:
-        """What elements give a node, and of moments those of the forces that rigid links pass.
+        """Force or moment of elements on a node, with moments of forces that rigid links pass.
 
         A link passes the force f to its end and ``-f`` at this end to where it starts, a place
         r before the end: there the moment ``-r x f``.
@@ -160,7 +160,7 @@ class Balance:
 
 
 class System:
-    """What connections pass to their nodes so that each of these is in balance.
+    """Forces that connections pass to their nodes so that each of these is in balance.
 
     Of all solutions of ``B f + given = 0``, B the incidence matrix, that of least norm:
     ``f = B^T y`` with ``B B^T y = -given``.
@@ -202,7 +202,7 @@ class _Groups:
         return node
 
     def join(self, one: Node | None, other: Node | None) -> bool:
-        """Make two groups one; whether they were two."""
+        """Make two groups one; tell whether they were two."""
         a, b = self.of(one), self.of(other)
         if a is None:
             a, b = b, a

@@ -22,7 +22,7 @@ def pressing(of: Parts) -> dict[str, Element]:
 
 
 def has(element: Element, quantity: str) -> bool:
-    """Whether an element has one of the quantities of this module."""
+    """Tell whether an element has one of the quantities of this module."""
     memory = element_kernel(element.kind).MEMORY
     return {"gap": "depth", "normal_force": "normal"}.get(quantity, "slid") in memory
 

@@ -141,7 +141,7 @@ def power(of: Numbers, name: str) -> Number:
 
 
 def driven(drive: Joint | Motion) -> str:
-    """Whether a drive moves a position or a rotation."""
+    """Kind of DOF block that a drive moves: position or rotation."""
     if isinstance(drive, Motion):
         return drive.place.kind
     return drive.constraints[0].attachments[0].kind

@@ -1,4 +1,4 @@
-"""What is inside superelements: FE nodes, ``<body>.node<k>``, and outputs, ``<body>.<output>``."""
+"""Names inside superelements: FE nodes, ``<body>.node<k>``, and outputs, ``<body>.<output>``."""
 
 from collections.abc import Iterator
 

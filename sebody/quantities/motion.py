@@ -67,7 +67,7 @@ def modes(of: Numbers, name: str, part: str) -> list[Number]:
 
 
 def kept(of: Numbers, name: str) -> Number:
-    """What a sensor, a controller or Python gave last."""
+    """Value that a sensor, a controller or Python gave last."""
     return of.recorded("frames", of.numbering.memory.values[name])
 
 

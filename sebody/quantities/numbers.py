@@ -43,7 +43,7 @@ class Numbers:
         raise NotImplementedError
 
     def started(self, k: int) -> float:
-        """What was kept at place k of the frames at the start."""
+        """Number that was kept at place k of the frames at the start."""
         raise NotImplementedError
 
     def multiplier(self, k: int) -> Number:

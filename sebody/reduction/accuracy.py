@@ -136,7 +136,7 @@ def _expected(known: Omission, errors: NDArray, accuracy: Accuracy) -> int:
 
 def _forecast(known: Omission, accuracy: Accuracy, error: float, expected: int, seconds: float
               ) -> str:
-    """What the tolerance will cost, and what costs less."""
+    """Forecast of the cost of the tolerance, and of cheaper ones."""
     text = f"{len(known.squares)} modes with the interfaces clamped: "
     if np.isfinite(error):
         what = "free frequencies" if accuracy.of == "frequencies" else "the dynamic stiffness"
@@ -162,7 +162,7 @@ def _rounded(seconds: float) -> str:
 
 def reached(static: ComponentModes, interior: ClampedInterior,
             matrices: tuple[sparse.csc_array, sparse.csc_array], modes: int) -> str:
-    """What a number of modes is good for, in words."""
+    """Accuracy of a number of modes, in words."""
     try:
         known = Omission(static, interior, matrices, modes + 4)
         frequencies, stiffness = known.bands(min(modes, len(known.squares)), _TOLERANCES)

@@ -169,7 +169,7 @@ class ReducedBody:
 
     @property
     def planar(self) -> bool:
-        """Whether the body lives in the xy plane."""
+        """Tell whether the body lives in the xy plane."""
         return self.coordinates.shape[1] == 2
 
     @cached_property
@@ -184,7 +184,7 @@ class ReducedBody:
 
     @cached_property
     def rests(self) -> bool:
-        """Whether its base must stay at rest: it is held and has no coupling with its base."""
+        """Tell whether its base must stay at rest: it is held and has no coupling with its base."""
         if self.base is None:
             return False
         at = [*self._rows_of("position", self.base), *self._rows_of("rotation", self.base)]

@@ -218,7 +218,7 @@ def _pairs(fe_model: FEModel, items: Items) -> list[BoundaryItem]:
 
 
 def _named(item: int | RigidFace | MeanFace) -> tuple[str, tuple[int, ...]]:
-    """What messages call a node of a boundary item, and its nodes."""
+    """Name of a node of a boundary item in messages, and its nodes."""
     if isinstance(item, RigidFace | MeanFace):
         return f"node {{}} of {item.called}", item.nodes
     return "boundary node {}", (item,)

@@ -172,7 +172,7 @@ def check_positive(matrix: NDArray, what: str, names: list[str]) -> None:
 
 
 def why_resisted(residual: float, turns: bool = False, local: bool = False) -> str:
-    """What may make a stiffness resist rigid motion by this part of its entries, and the remedy.
+    """Reason why a stiffness may resist rigid motion by this part of its entries, and the remedy.
 
     Parameters
     ----------

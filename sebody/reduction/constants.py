@@ -63,7 +63,7 @@ def _recovery(fe_model: FEModel, shapes: NDArray) -> Recovery:
 
 
 def _inertia_notes(fe_model: FEModel) -> list[str]:
-    """What the inertia of the moving body is made of."""
+    """Notes on the parts of the inertia of the moving body."""
     if fe_model.mass_field is None:
         return []
     turning = fe_model.rows[:, fe_model.coordinates.shape[1]:]

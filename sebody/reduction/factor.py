@@ -105,7 +105,7 @@ def _by_pardiso(stiffness: sparse.csc_array) -> Solver | None:
 
 
 def _of_user(stiffness: sparse.csc_array, factor: Factor) -> Solver | None:
-    """What a user's function makes of a stiffness; None of one that may be singular.
+    """Factors that a user's function makes of a stiffness; None of one that may be singular.
 
     SuperLU then says which DOFs are loose.
     """
@@ -156,7 +156,7 @@ def motions_without_strain(stiffness: sparse.csc_array, rigid: NDArray, lengths:
 
 
 def is_strainless(stiffness: sparse.csc_array, motions: NDArray) -> bool:
-    """Whether a stiffness resists motions (n, k) to rounding alone."""
+    """Tell whether a stiffness resists motions (n, k) to rounding alone."""
     summands = (abs(stiffness) @ np.abs(motions)).max(axis=0, initial=0.0)
     return bool(np.all(np.abs(stiffness @ motions).max(axis=0, initial=0.0) <= STRAIN * summands))
 

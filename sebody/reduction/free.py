@@ -1,4 +1,4 @@
-"""Whether an FE model is one body, and free: its loose parts, and rigid motions that it resists."""
+"""Parts and freedom of an FE model: its loose parts, and rigid motions that it resists."""
 
 from collections.abc import Sequence
 

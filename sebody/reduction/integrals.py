@@ -105,7 +105,7 @@ class MassIntegrals:
 
     def _add_rotations(self, found: dict[str, NDArray], psi: NDArray, moments: NDArray,
                        rigid_moments: NDArray) -> None:
-        """What the rotary inertia of the points adds; in a plane it does not turn."""
+        """Add the rotary inertia of the points; in a plane it does not turn."""
         found["Mbar"] = found["Mbar"] + _flat(psi).T @ _flat(moments)
         if self.angles == 1:
             return
@@ -123,7 +123,7 @@ class MassIntegrals:
         return self._dot(self._translations, self._weighed(places))[:, 0]
 
     def _second_order(self, psi: NDArray) -> tuple[NDArray, NDArray]:
-        """What the second-order rotation of the points adds to K and J2 (no such term in a plane).
+        """Terms of the second-order rotation of the points in K and J2 (none in a plane).
 
         ``K_k += psi^T skew(J e_k) psi / 2`` and ``J2_kl -= psi^T (X + X^T) psi / 4`` with ``X =
         skew(J e_k)^T skew(e_l) + skew(J e_l)^T skew(e_k)``.

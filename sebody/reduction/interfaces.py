@@ -50,7 +50,7 @@ class RigidFace:
 
     @property
     def called(self) -> str:
-        """What messages call it."""
+        """Name in messages."""
         return f"the rigid face {self.name!r}" if self.name else "a rigid face"
 
 
@@ -104,7 +104,7 @@ class MeanFace:
 
     @property
     def called(self) -> str:
-        """What messages call it."""
+        """Name in messages."""
         return f"the mean face {self.name!r}" if self.name else "a mean face"
 
 
@@ -153,7 +153,7 @@ class MeanMotion:
 
     @property
     def turns(self) -> bool:
-        """Whether the nodes hold a rotation: they do not all lie on a line, in a plane at a point.
+        """Tell if the nodes hold a rotation: they do not all lie on a line, in a plane at a point.
         """
         spread = np.linalg.eigvalsh(self._spread)
         across = 1 if self.rows.shape[1] == 3 else 2
@@ -162,7 +162,7 @@ class MeanMotion:
 
     @property
     def off_centre(self) -> bool:
-        """Whether the point's displacement depends on the rotation."""
+        """Tell whether the point's displacement depends on the rotation."""
         return bool(np.abs(self._lever).max() > _LINE * np.abs(self._arms).max(initial=0.0))
 
     def translation(self) -> NDArray:

@@ -1,4 +1,4 @@
-"""What internal modes are by their stresses: some stretch, some have none, some only loads stress.
+"""Kinds of internal modes by their stresses: some stretch, some have none, some only loads stress.
 
 Of internal modes, shapes of unit strain energy, the geometric stiffness on the lowest vibrations of
 the free body is known, and how far each takes part in these. A bow whose ends are interfaces is

@@ -57,7 +57,7 @@ def check_shapes(invariants: InertiaInvariants, n: int) -> None:
 
 
 def _check_rigid(invariants: InertiaInvariants, rigid: NDArray, scale: NDArray) -> None:
-    """What follows from Mbar on the rigid motions."""
+    """Check of Mbar on the rigid motions, and of what follows from it."""
     D = len(invariants.c0)
     whole = np.vstack([rigid, np.zeros((invariants.slaved, rigid.shape[1]))])
     momenta = whole.T @ invariants.Mbar             # (S1 ; g)

@@ -109,7 +109,7 @@ class InertiaInvariants:
 
     @property
     def planar(self) -> bool:
-        """Whether the body lives in the xy plane."""
+        """Tell whether the body lives in the xy plane."""
         return len(self.c0) == 2
 
     @property
@@ -124,7 +124,7 @@ class InertiaInvariants:
 
     @property
     def stiffens(self) -> bool:
-        """Whether there is anything of second order: stresses of the body change its stiffness."""
+        """Tell if there is anything of second order: stresses of the body change its stiffness."""
         return self.slaved + self.resultants > 0
 
     @cached_property

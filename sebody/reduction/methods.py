@@ -232,7 +232,7 @@ class _FreeModes:
         self.left_out = free.left_out(count)
 
     def accuracy(self) -> str:
-        """What the modes are good for, in words."""
+        """Accuracy of the modes, in words."""
         last = np.sqrt(self.squares[-1]) / (2 * np.pi) if len(self.squares) else 0.0
         return (f"the {len(self.squares)} free frequencies up to {last:.4g} are those of the FE "
                 "model (in cycles per unit of time)")

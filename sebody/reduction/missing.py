@@ -1,4 +1,4 @@
-"""What a body lacks, and why: stresses, stiffening by stresses, exact inertia, damping.
+"""Lacks of a body, and why: stresses, stiffening by stresses, exact inertia, damping.
 
 Every reason is a text ``why; what to do``.
 """
@@ -22,7 +22,7 @@ _MACNEAL = "residual modes carry no mass in MacNeal's method; use Rubin's, metho
 
 
 def missing_of(fe_model: FEModel, method: str) -> dict[str, str]:
-    """What a body that is reduced from an FE model by a method lacks, with reasons."""
+    """Lacks of a body that is reduced from an FE model by a method, with reasons."""
     has = {"stresses": bool(fe_model.stress),
            "stiffening": fe_model.geometric_stiffness is not None,
            "exact inertia": fe_model.mass_field is not None}
@@ -52,7 +52,7 @@ def checked_missing(reasons: Mapping[str, str], what: str = "missing") -> dict[s
 
 
 def lacks(stressed: bool, exact: bool, missing: Mapping[str, str]) -> dict[str, str]:
-    """What a body lacks, with reasons.
+    """Lacks of a body, with reasons.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def lacks(stressed: bool, exact: bool, missing: Mapping[str, str]) -> dict[str, 
 
 
 def sentences(found: Mapping[str, str], stressed: bool) -> list[str]:
-    """What `lacks` returns in sentences, those with one reason together."""
+    """Lacks in sentences, those with one reason together."""
     reasons: dict[str, list[str]] = {}
     for what, reason in found.items():
         reasons.setdefault(reason, []).append(what)

@@ -1,4 +1,4 @@
-"""What modes that a body of Craig and Bampton leaves out would change.
+"""Effect of modes that a body of Craig and Bampton leaves out.
 
 With all modes, ``D(w) = K - w^2 M - w^4 sum_j p_j p_j^T / (w_j^2 - w^2)`` is the exact dynamic
 stiffness of the interface, K and M reduced to constraint modes Psi, ``p_j = Psi^T M phi_j``.
@@ -36,7 +36,7 @@ _SHIFT = 1e-7       # of the stiffness by the mass, of their ratio, so that rigi
 
 
 class Omission:
-    """What is known of all modes of a clamped body of which `wanted` are computed.
+    """Bounds of all modes of a clamped body of which `wanted` are computed.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class Omission:
             for square, part in zip(self.squares, self.parts, strict=True)], dtype=bool)
 
     def covers(self, omega: float) -> bool:
-        """Whether enough modes are computed to tell errors up to an angular frequency."""
+        """Tell whether enough modes are computed to tell errors up to an angular frequency."""
         return self.complete or self.squares[-1] >= (_BEYOND * omega)**2
 
     def _rest(self, square: float) -> NDArray:

@@ -145,7 +145,7 @@ def _sizes(matrix: NDArray, names: list[str]) -> NDArray:
 
 
 def _odd_load(load: NDArray, signs: NDArray, stiffness: NDArray) -> bool:
-    """Whether a load has a part out of the plane; by the stiffness forces are comparable."""
+    """Tell whether a load has a part out of the plane; by the stiffness forces are comparable."""
     diagonal = np.diag(stiffness)
     size = load / np.sqrt(np.maximum(diagonal, 1e-14 * diagonal.max()))
     return bool(np.abs(size[signs < 0]).max(initial=0.0) > _ROUNDING * np.abs(size).max())

@@ -69,7 +69,7 @@ class Recovery:
         return self.coordinates if self.axes is None else self.coordinates @ self.axes.T
 
     def has(self, number: int) -> bool:
-        """Whether the node of this number in the FE model is among those that are kept."""
+        """Tell whether the node of this number in the FE model is among those that are kept."""
         if self.nodes is None:
             return 0 <= number < len(self.coordinates)
         place = int(np.searchsorted(self.nodes, number))
@@ -118,7 +118,7 @@ class Recovery:
         return np.hstack([z[:, :n] @ self.by, z[:, n:]])
 
     def restricted(self, nodes: NDArray) -> "Recovery":
-        """Of some nodes alone, with the elements all of whose nodes are among them."""
+        """Restrict to some nodes alone, with the elements all of whose nodes are among them."""
         nodes = np.unique(nodes)
         place = np.full(len(self.coordinates), -1)
         place[nodes] = np.arange(len(nodes))

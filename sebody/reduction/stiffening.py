@@ -60,7 +60,7 @@ _MANY, _SLIGHT = 18, 0.1
 
 @dataclass(frozen=True, eq=False)
 class Stiffening:
-    """What y brings along in second order; Q, lam, E, Ghat as in `InertiaInvariants`.
+    """Terms of second order in y; Q, lam, E, Ghat as in `InertiaInvariants`.
 
     Parameters
     ----------

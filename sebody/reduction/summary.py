@@ -29,7 +29,7 @@ def effective_masses(mass: NDArray, rigid: NDArray, modes: int) -> NDArray:
 
 
 def frequencies(stiffness: NDArray, mass: NDArray, modes: int) -> NDArray:
-    """Of the internal modes with the boundary clamped, in cycles per unit of time, (modes,)."""
+    """Frequencies of the internal modes with the boundary clamped, in cycles per time, (modes,)."""
     own = slice(len(mass) - modes, None)
     with np.errstate(divide="ignore"):
         squares = np.diag(stiffness)[own] / np.diag(mass)[own]

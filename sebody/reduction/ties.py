@@ -177,6 +177,6 @@ def _rigid_rows(arms: NDArray, node_dofs: tuple[str, ...]) -> NDArray:
 
 
 def collinear(points: NDArray) -> bool:
-    """Whether points lie on a line."""
+    """Tell whether points lie on a line."""
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return len(points) < 3 or spread[1] < 1e-8 * spread[0]

@@ -1,4 +1,4 @@
-"""What a long reduction says of itself while it works."""
+"""Remarks of a long reduction on its own progress."""
 
 import sys
 from collections.abc import Callable
@@ -12,10 +12,10 @@ class Watch:
     """Stages of the work, and remarks that are to stay; both are lost by default."""
 
     def stage(self, text: str) -> None:
-        """What is being done now."""
+        """Tell the stage that begins now."""
 
     def remark(self, text: str) -> None:
-        """What a user should know before it is done."""
+        """Tell a user something before the reduction is done."""
 
     def close(self) -> None:
         """There are no further messages."""
@@ -65,7 +65,7 @@ class _Calls(Watch):
 
 
 def watching(progress: Callable[[str], Any] | bool | Watch | None) -> Watch:
-    """What is told: a function of a text, the terminal for True, nothing for None.
+    """Watch of a reduction: a function of a text, the terminal for True, nothing for None.
 
     Raises
     ------

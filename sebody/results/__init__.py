@@ -1,4 +1,4 @@
-"""What a run yields: histories by name, balances, pictures, files."""
+"""Results of runs: histories by name, balances, pictures, files."""
 
 from typing import TYPE_CHECKING
 

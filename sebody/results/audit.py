@@ -47,7 +47,7 @@ def audit(result: Recording) -> list[Finding]:
 
 
 def momentum_defect(result: Recording, angular: bool) -> tuple[NDArray, NDArray]:
-    """What the momentum has beyond the impulse of all forces from outside, (n, c), and its doubt.
+    """Momentum beyond the impulse of all forces from outside, (n, c), and its doubt.
 
     The impulse is that of everything that acts on the bodies: what they do to each other adds up
     to zero. It is integrated over the recorded states by trapezoids; the doubt is the difference

@@ -1,4 +1,4 @@
-"""What summaries say of the bodies of a model: what they lack and why, kernels that would pay."""
+"""Remarks of summaries on the bodies of a model: what they lack and why, kernels that would pay."""
 
 from sebody.contract.names import layout_variant
 from sebody.fem.materials import doubts
@@ -27,7 +27,7 @@ def cautions(model: Mechanism) -> list[str]:
 
 
 def _of_materials(model: Mechanism) -> list[str]:
-    """What speaks against the materials in units that were named."""
+    """Doubts about the materials in units that were named."""
     if not model.units:
         return []
     sentences: dict[str, None] = {}

@@ -10,7 +10,7 @@ from sebody.quantities.contacts import OPEN
 
 
 def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str, str]:
-    """What every contact, stop and friction is in: sticks, slides, presses or open."""
+    """State of every contact, stop and friction: sticks, slides, presses or open."""
     states_by_name = {}
     for load in model.loads:
         memory = element_kernel(load.kind).MEMORY
@@ -27,12 +27,12 @@ def states(model: Mechanism, numbering: Numbering, frames: NDArray) -> dict[str,
 
 
 def without_play(load: Element) -> bool:
-    """Whether it presses on both sides of the same place, as teeth without backlash do."""
+    """Tell whether it presses on both sides of the same place, as teeth without backlash do."""
     return load.kind.endswith("gear_play") and load.number("lower") == load.number("upper")
 
 
 def normal_forces(model: Mechanism) -> list[str]:
-    """What presses in the friction of joints: equations of the joint, or a preload alone."""
+    """Sources of pressure in the friction of joints: equations of the joint, or a preload alone."""
     rubbing = [load for load in model.loads if "friction" in load.kind]
     read = {load.name: load.pressed_by.name for load in rubbing if load.pressed_by is not None}
     preloaded = [load.name for load in rubbing if load.name not in read]

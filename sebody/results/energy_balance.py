@@ -34,7 +34,7 @@ def rounded(inner: NDArray, potential: NDArray) -> float:
 
 
 def warning(balance: float, adaptive: bool = False) -> str:
-    """What a run with such a balance warns of; nothing if it is within the limit.
+    """Warning of a run with such a balance; nothing if it is within the limit.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the FE nodes of a superelement do in recorded states: kinematics, many states at once."""
+"""Motion of the FE nodes of a superelement in recorded states: kinematics, many states at once."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class FieldStates:
         return self._in(axes, states, local)
 
     def stresses(self, static: bool = True) -> Stresses:
-        """What computes the stresses.
+        """Stresses of the body.
 
         Raises
         ------

@@ -53,7 +53,7 @@ class HotSpots(tuple):
             row, widths, strict=True)) for row in (heads, *rows))
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return table(*self._table())
 
     def to_pandas(self) -> "DataFrame":

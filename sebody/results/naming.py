@@ -66,7 +66,7 @@ def values(recording: Recording, name: str) -> Values:
 
 
 def is_known(recording: Recording, name: object) -> bool:
-    """Whether a name is that of a quantity, a component or a group."""
+    """Tell whether a name is that of a quantity, a component or a group."""
     try:
         look_up(recording, inputs.name(name, "name of a quantity"))
     except InputError:

@@ -111,7 +111,7 @@ class Inside:
     # stresses
 
     def stress(self, place: int, quantity: str) -> Any:
-        """What is linear in amplitudes; the stress of the worst of several fibres of a beam."""
+        """Quantity that is linear in amplitudes; of beams the stress of the worst fibre."""
         stresses, amplitudes = self._strained()
         if quantity != "stress":
             rows = stresses.sections_of_node(place, quantity)

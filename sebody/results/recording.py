@@ -28,7 +28,7 @@ from sebody.results.postprocessing import (
 
 
 class Start(NamedTuple):
-    """What a simulation changed or found before its first step."""
+    """Changes and findings of a simulation before its first step."""
 
     changed: dict[str, float]       # DOF blocks whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain

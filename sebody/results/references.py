@@ -185,7 +185,7 @@ class Welded:
         return nodes[0] if len(self.bodies(body)) > 1 else None
 
     def has(self, body: Superelement, name: str) -> bool:
-        """Whether displacements of a body can be measured from a node of this name, or `FRAME`."""
+        """Tell if displacements of a body can be measured from a node of this name, or `FRAME`."""
         return name == FRAME or any(node.name == name for node in self.candidates(body))
 
     def candidates(self, body: Superelement) -> Iterator[Node]:

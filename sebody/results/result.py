@@ -134,7 +134,7 @@ class Result(Recording):
         return naming.look_up(self, name)
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is a quantity, a component or a group of this name."""
+        """Tell whether there is a quantity, a component or a group of this name."""
         return naming.is_known(self, name)
 
     def __iter__(self) -> Iterator[str]:
@@ -182,7 +182,7 @@ class Result(Recording):
 
     @property
     def cautions(self) -> list[str]:
-        """What bodies lack and why: stresses, stiffening, exact inertia; implausible materials."""
+        """Lacks of bodies, and why: stresses, stiffening, exact inertia; implausible materials."""
         return cautions(self.model)
 
     @cached_property
@@ -263,7 +263,7 @@ class Result(Recording):
         return unpacked(cls, path)
 
     def _repr_html_(self) -> str:
-        """What notebooks show: the summary as a table."""
+        """HTML that notebooks show: the summary as a table."""
         lines = (line.partition("  ") if len(line) < LABELS else (line[:LABELS], "", line[LABELS:])
                  for line in self.summary().splitlines())
         return table(("run", ""), [(name.strip(), value.strip()) for name, _, value in lines])

@@ -1,4 +1,4 @@
-"""Whether the parts of a model that a file describes are what the program's own are.
+"""Tell whether the parts of a model that a file describes are what the program's own are.
 
     parts -> names and types of their fields -> bodies, numbers of coordinates -> sizes of members
 """
@@ -106,7 +106,7 @@ def _hints(kind: type) -> dict[str, Any]:
 
 
 def _fits(value: Any, hint: Any) -> bool:
-    """Whether a value is of a type; compiled functions are None in files."""
+    """Tell whether a value is of a type; compiled functions are None in files."""
     origin, inner = get_origin(hint), get_args(hint)
     if origin in (Union, UnionType):
         return any(_fits(value, one) for one in inner)

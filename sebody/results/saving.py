@@ -92,7 +92,7 @@ def packed(recording: Recording, advice: dict[str, list[str]]) -> dict[str, NDAr
 
 
 def unpacked(make: Callable[..., Any], path: str | Path) -> Any:
-    """What `make`, called with the arguments of `Recording`, returns for a file.
+    """Object that `make`, called with the arguments of `Recording`, returns for a file.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What the summary of an equilibrium says: load steps, iterations, forces out of balance."""
+"""Summary of an equilibrium: load steps, iterations, forces out of balance."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from sebody.results.recording import Recording
 
 
 def is_static(recording: Recording) -> bool:
-    """Whether the states are those of an equilibrium: there are some beside the first, no steps."""
+    """Tell if the states are those of an equilibrium: there are some beside the first, no steps."""
     return len(recording.rows) > 1 and int(record(CONTROL, recording.counters).steps) == 0
 
 

@@ -113,7 +113,7 @@ class Stresses:
         return nodal
 
     def at_points(self, states: NDArray, what: str = "stress") -> NDArray:
-        """Of all points of integration, or fibres, in the order of `places`, (states, p, 6)."""
+        """Stresses at points of integration or fibres, in the order of `places`, (states, p, 6)."""
         self._refuse_strain(what)
         moved = self._moved(states)
         parts = [getattr(one, what)(moved) for one in (*self._solids, *self._beams)]
@@ -164,7 +164,7 @@ class Stresses:
             np.zeros((len(self._amplitudes[0]), 0, 6)))
 
     def fibres_by_section_forces(self, node: int) -> NDArray | None:
-        """What unit section forces cause in all fibres at a node, (fibres, 6, ends * 6).
+        """Stresses of unit section forces in all fibres at a node, (fibres, 6, ends * 6).
 
         Fibres and ends of elements are in the order of `fibres_of_node` and
         `sections_of_node`. None where the stress is that of solid elements.

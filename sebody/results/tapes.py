@@ -71,7 +71,7 @@ class States(Symbols):
                 for part, own in ROW.slices(group.counts).items()}
 
     def is_inside(self, name: str) -> bool:
-        """Whether a quantity is one of FE nodes: their tapes are long."""
+        """Tell whether a quantity is one of FE nodes: their tapes are long."""
         owner = split(self, name)[0].rpartition(".")[0]
         return owner not in self.model.nodes and owner in FENodes(self)
 
@@ -101,7 +101,7 @@ class States(Symbols):
         return np.array([place for _, place in found], dtype=np.int64)
 
     def depends(self) -> NDArray:
-        """What each number that is read depends on, (inputs, 3), as of `contract.read_numbers`.
+        """Dependence of each number that is read, (inputs, 3), as of `contract.read_numbers`.
 
         And its place there: of a rotation matrix the first coordinate of its rotation, then the
         entry among all matrices.

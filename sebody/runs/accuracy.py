@@ -202,7 +202,7 @@ def _falling(change: float, coarser: float, order: float) -> float:
 
 
 def _good_enough(estimates: Sequence[Estimate]) -> bool:
-    """Whether the last run is within the tolerance.
+    """Tell whether the last run is within the tolerance.
 
     Three runs that are too coarse may fall with the order of the scheme by chance: that counts for
     sure only with the run before them.

@@ -1,4 +1,4 @@
-"""What a model is, as a hash: to see whether a saved run is of another one."""
+"""Hash of a model: to see whether a saved run is of another one."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass
@@ -65,7 +65,7 @@ def _bytes(value: object) -> bytes:
 
 
 def described(function: Callable) -> list[tuple[str, object]]:
-    """What a function computes: its bytecode, and by name what it and its helpers read."""
+    """Description of a function: its bytecode, and by name what it and its helpers read."""
     read = values_read(getattr(function, "py_func", function))      # of what Numba has compiled
     return [(name, _stable(value)) for name, value in read.items()]
 

@@ -1,4 +1,4 @@
-"""What a first run compiles: the kernels of its models and the time loop, side by side.
+"""Compilation for a first run: the kernels of its models and the time loop, side by side.
 
 The parts of the loop are compiled for the types of a small model's arrays, which are those of
 every model. Kernels are known by name. Nothing is printed or done if everything is in the cache.

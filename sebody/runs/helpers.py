@@ -57,7 +57,7 @@ def helping(system: System, state: State) -> Iterator[None]:
 
 
 def worth_help(system: System, steps: int) -> bool:
-    """Whether so many steps take longer than helpers do to begin and end."""
+    """Tell whether so many steps take longer than helpers do to begin and end."""
     return bool(system.shared.mail.size) and steps * system.diagonal.size >= WORTH_IT
 
 

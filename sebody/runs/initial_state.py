@@ -128,7 +128,7 @@ def _refuse_overflow(residual: NDArray, masses: csc_matrix, numbering: Numbering
 
 
 def _lengths(model: Mechanism, system: System, numbering: Numbering, state: State) -> NDArray:
-    """What residuals of constraints are compared with: sizes of positions, or one radian."""
+    """Sizes that residuals of constraints are compared with: sizes of positions, or one radian."""
     lengths = np.full(numbering.total, max(np.abs(state.q).max(), system.magnitude.max()))
     for equation in model.constraints:
         if all(dof_block.rotational for dof_block in equation.dof_blocks):

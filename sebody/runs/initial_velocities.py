@@ -34,7 +34,7 @@ def refuse_contradicted(model: Mechanism, numbering: Numbering, state: State) ->
 
 
 def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
-    """What a run says where joints and drives demand other velocities than `rigid_velocity` gave.
+    """Remark where joints and drives demand other velocities than `rigid_velocity` gave.
 
     Nothing where they do not.
     """
@@ -51,7 +51,7 @@ def changed(model: Mechanism, numbering: Numbering, state: State) -> str:
 
 
 def strained(model: Mechanism, numbering: Numbering, state: State) -> str:
-    """What a run says of bodies of which some nodes were given velocities and others rest or not.
+    """Remark on bodies of which some nodes were given velocities and others rest or not.
 
     Their velocities are not those of a rigid motion, nor were all of them given on purpose.
     """
@@ -86,7 +86,7 @@ def _differ(state: State, one: NDArray, other: NDArray) -> bool:
 
 
 def _holds(dof_block: DofBlock) -> str:
-    """What gives a DOF block that is not solved for its velocity."""
+    """Source of a DOF block that is not solved for its velocity."""
     if dof_block.root is not None:
         return f"it follows {dof_block.root.name} by a rigid link"
     if dof_block.motions:
@@ -95,7 +95,7 @@ def _holds(dof_block: DofBlock) -> str:
 
 
 def _is_partly_given(body: Superelement) -> bool:
-    """Whether some of the nodes of a body have velocities from the user, and some have not."""
+    """Tell whether some of the nodes of a body have velocities from the user, and some have not."""
     free = [t for t in (*body.positions, *body.rotations) if t.solved]
     return any(t.rate.any() for t in free) and not all(t.given for t in free)
 
@@ -118,7 +118,7 @@ def _deformation(reduced: ReducedBody) -> NDArray:
 
 
 def _is_given(dof_block: DofBlock) -> bool:
-    """Whether `initial_velocity` or `rigid_velocity` has set the velocity, the latter not to 0."""
+    """Tell if `initial_velocity` or `rigid_velocity` has set the velocity, the latter not to 0."""
     return dof_block.given or bool(dof_block.rate.any())
 
 

@@ -104,12 +104,12 @@ class Scaled:
 
     @cached_property
     def regular(self) -> bool:
-        """Whether no pivot is too small to be trusted."""
+        """Tell whether no pivot is too small to be trusted."""
         return self._pivots_above(SINGULAR)
 
     @cached_property
     def suspicious(self) -> bool:
-        """Whether a pivot is so small that constraints may be redundant."""
+        """Tell whether a pivot is so small that constraints may be redundant."""
         return not self._pivots_above(SUSPICIOUS)
 
     def _pivots_above(self, share: float) -> bool:

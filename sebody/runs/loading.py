@@ -119,7 +119,7 @@ class Loading:
         self.run.state.now[:] = self._start
 
     def _reach(self, target: float) -> bool:
-        """Whether the structure gets to an equilibrium under a share of the load."""
+        """Tell whether the structure gets to an equilibrium under a share of the load."""
         run, tolerance, spin = self.run, self.tolerance, self.steady.times(np.sqrt(target))
         found = balance(run, tolerance, spin, stiff=self._slack)
         if not self.judged:
@@ -139,7 +139,7 @@ class Loading:
                 self._leave(spin, target, found.tangent))
 
     def _follows(self, target: float, first: float) -> bool:
-        """Whether a stable state is where the path leads, or the path ends and it may be another.
+        """Tell if a stable state is where the path leads, or the path ends and it may be another.
 
         The first correction says how far that is.
         """
@@ -166,7 +166,7 @@ class Loading:
         return False
 
     def _is_stable(self, target: float, tangent: csc_matrix) -> bool:
-        """Whether an equilibrium is stable; nothing can be said where loads follow the structure.
+        """Tell if an equilibrium is stable; nothing can be said where loads follow the structure.
 
         Raises
         ------
@@ -183,7 +183,7 @@ class Loading:
             raise SimulationError(f"the equilibrium at {target:.4g} of the load {folded}", None)
 
     def _rests(self, spin: Spin, target: float) -> bool:
-        """Whether the structure settles, from where it is, in a stable state."""
+        """Tell whether the structure settles, from where it is, in a stable state."""
         return (settle(self.run, self.tolerance, spin, False, self._work)
                 and self._is_stable(target, linear(self.run, spin, None)[0]))
 
@@ -275,7 +275,7 @@ class Loading:
         return self.run.numbering.names[int(np.argmax(parts))].partition("[")[0]
 
     def verdict(self) -> str:
-        """Whether the state is stable, and where the path was not, in words."""
+        """Tell whether the state is stable, and where the path was not, in words."""
         if not self.judged:
             return "not judged, as the frame rotates"
         stiffness = Stiffness(self.run, linear(self.run, self.steady, None)[0], self._unit)

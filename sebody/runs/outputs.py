@@ -1,4 +1,4 @@
-"""What is kept of a run: histories of quantities, or numbers that are made of them on the way."""
+"""Outputs of a run: histories of quantities, or numbers that are made of them on the way."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def outputs_of(given: Mapping[str, Output | str], t_end: float) -> dict[str, Out
 
 
 class Room(NamedTuple):
-    """What `fold` keeps of the history of a run."""
+    """Numbers that `fold` keeps of the history of a run."""
 
     kept: NDArray
     before: NDArray
@@ -216,7 +216,7 @@ class Fold:
 
 
 def _asked(output: Output) -> tuple[int, float, bool]:
-    """What `fold` is to make."""
+    """Request to `fold`: kind, number, and whether of the length."""
     number = output.power if output.time is None else output.time
     return KINDS.index(output.kind), number, output.norm
 

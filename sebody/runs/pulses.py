@@ -44,7 +44,7 @@ def unseen(numbering: Numbering, h: float, begin: float, end: float) -> Iterator
 
 def _missed(names: Sequence[str], course: Callable[[NDArray], NDArray], times: NDArray, h: float
             ) -> Iterator[tuple[str, str]]:
-    """Of some functions of time, (times,) or (times, names), those with a peak that steps miss."""
+    """Those of some functions, (times,) or (times, names), that have a peak which steps miss."""
     if not times.size:
         return
     steps = times / h

@@ -27,7 +27,7 @@ HALF = 0.5              # of such a motion, `Relaxed.unmoved` leaves all; of oth
 
 def least(matrix: csc_matrix, system: System,
           direct: Scaled | None = None) -> Callable[[NDArray], NDArray]:
-    """What solves for given right sides: with least norm where the matrix is singular.
+    """Solver for given right sides: with least norm where the matrix is singular.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ class Solver:
 
 
 def _lacks_mass(matrix: csc_matrix, system: System) -> bool:
-    """Whether a motion has no mass and no constraint; constraints may be redundant.
+    """Tell whether a motion has no mass and no constraint; constraints may be redundant.
 
     Constraints that give way, by an amount of the order of one, have unique multipliers.
     """
@@ -235,7 +235,7 @@ def _lacks_mass(matrix: csc_matrix, system: System) -> bool:
 
 
 def contradiction(system: System, state: State, numbering: Numbering) -> str:
-    """What a failed step cannot meet: constraints, or a force on something without mass.
+    """Demand that a failed step cannot meet: constraints, or a force on something without mass.
 
     Empty if that is a force on something with mass: then the step is too long, or diverged.
     """

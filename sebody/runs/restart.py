@@ -102,7 +102,7 @@ def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation:
 
 
 def _settings(file: str, settings: Any, headers: Mapping[str, Header]) -> dict:
-    """What the file says of the run, of a version and with the members that are read."""
+    """Settings of the run in the file, of a version and with the members that are read."""
     if settings["version"] != VERSION:
         raise InputError(f"{file} is of version {settings['version']}, this program reads "
                          f"{VERSION}: {REPEAT}")
@@ -154,7 +154,7 @@ def _other_model(file: str) -> InputError:
 
 
 def _members(run: Simulation) -> dict[str, Member]:
-    """What the members of a file of this run are; scratch memory may hold anything."""
+    """Requirements of the members of a file of this run; scratch memory may hold anything."""
     members = {"rows": Member((None, "width")), "regularized": Member((1,), "i", least=0),
                "massless": Member((1,), "i", least=0)}
     for name in ("inertias", "massless_axes"):

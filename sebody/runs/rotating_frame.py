@@ -71,7 +71,7 @@ class Spin:
 
     @property
     def rotates(self) -> bool:
-        """Whether the angular velocity is not zero."""
+        """Tell whether the angular velocity is not zero."""
         return bool(np.any(self.velocity))
 
     @property

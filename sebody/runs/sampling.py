@@ -34,7 +34,7 @@ MULTIPLE = 1e-6     # of a step: by which a period may miss a multiple of it
 
 
 class Sampling:
-    """What a run needs of Python at samples: readings of sensors that the loop cannot read."""
+    """Work of Python at the samples of a run: readings of sensors that the loop cannot read."""
 
     def __init__(self, model: Mechanism, numbering: Numbering, system: System, state: State):
         self.model, self.numbering, self.system, self.state = model, numbering, system, state
@@ -55,12 +55,12 @@ class Sampling:
 
     @property
     def has_inputs(self) -> bool:
-        """Whether there is anything to set."""
+        """True where there is an input to set."""
         return bool(self._numbers)
 
     @property
     def samples(self) -> bool:
-        """Whether there is anything to sample."""
+        """True where there is a task to do at samples."""
         return self.system.control.periods.size > 0
 
     def serve(self) -> None:
@@ -96,7 +96,7 @@ class Sampling:
                                  "variable steps, tolerance=Tolerance(...)")
 
     def _measured(self, sensor: Sensor) -> float | NDArray:
-        """What a sensor measures in the state reached."""
+        """Measurement of a sensor in the state reached."""
         key = sensor.quantity, sensor.axes
         if key not in self._measure:
             self._measure[key] = self._reader(*key)
@@ -165,12 +165,12 @@ class Sampling:
         return reader()
 
     def _last(self, name: str) -> Callable[[], float] | None:
-        """What reads the value that a sensor, a controller or Python gave last."""
+        """Reader of the value that a sensor, a controller or Python gave last."""
         frames, place = self.state.frames, self.numbering.memory.values.get(name)
         return None if place is None else lambda: float(frames[place])
 
     def _reader(self, name: str, axes: str = "") -> Callable[[], float | NDArray]:
-        """What reads a quantity, of a vector perhaps a component in axes of a node."""
+        """Reader of a quantity, of a vector perhaps a component in axes of a node."""
         now = self.state.now
         states = States(self.model, self.numbering, self.system, self.state, self._start)
         try:
@@ -178,7 +178,8 @@ class Sampling:
         except NoTape:
             return lambda: self._looked_up(name, axes)
         if (places := states.places()) is None:
-            return partial(self._evaluated, states.reading(), shape)
+            turns = bool(states.tape.angles)
+            return partial(self._evaluated, states.reading(), shape, turns)
         if shape:
             return lambda: now[places].reshape(shape)
         place = int(places[0])
@@ -194,12 +195,16 @@ class Sampling:
         R = of.whole(of.rotation(self.model.nodes[axes].rotation))[0]
         return float(R[:, "xyz".index(label)] @ look_up(row, vector)[0])
 
-    def _evaluated(self, reading: Reading, shape: tuple[int, ...]) -> float | NDArray:
+    def _evaluated(self, reading: Reading, shape: tuple[int, ...], turns: bool) -> float | NDArray:
         """A quantity whose tape is evaluated in the state reached."""
-        reading.numbers[1:] = 0.0       # angles begin within half a turn
+        if turns:
+            reading.numbers[1:] = 0.0       # angles begin within half a turn
         if evaluate(self.system, self.state, reading):
             raise InputError(f"the state at t = {self.state.clock.time:.6g} cannot be evaluated")
-        return reading.values.reshape(shape).copy() if shape else float(reading.values[0])
+        if not shape:
+            return float(reading.values[0])
+        found = reading.values.copy()
+        return found if len(shape) == 1 else found.reshape(shape)
 
     def _row(self) -> Recording:
         """The state reached, as a result reads it."""

@@ -79,21 +79,21 @@ class Stiffness:
 
     @cached_property
     def follows(self) -> bool:
-        """Whether loads follow the structure, or friction holds it: no potential."""
+        """Tell whether loads follow the structure, or friction holds it: no potential."""
         scaled = csc_matrix(diags_array(self._scale) @ self._tangent @ diags_array(self._scale))
         odd = abs(scaled - scaled.T)
         return bool(odd.max() > FOLLOWING * abs(scaled).max())
 
     def surely_stable(self) -> bool:
-        """Whether no motion has a negative stiffness though constraints give way a little."""
+        """Tell whether no motion has a negative stiffness though constraints give way a little."""
         return bool(np.isfinite(self._K.data).all()) and self._positive(self._shift)
 
     def stiff(self) -> bool:
-        """Whether all motions have a positive stiffness, which is more than rounding."""
+        """Tell whether all motions have a positive stiffness, which is more than rounding."""
         return bool(np.isfinite(self._K.data).all()) and self._positive(-self._shift)
 
     def stable(self) -> bool:
-        """Whether no motion has a negative stiffness."""
+        """Tell whether no motion has a negative stiffness."""
         if self.surely_stable():
             return True
         if not np.isfinite(self._K.data).all():
@@ -126,7 +126,7 @@ class Stiffness:
         return csc_matrix(self._K + PENALTY * (self._G.T @ self._G))
 
     def _positive(self, shift: NDArray) -> bool:
-        """Whether the matrix with this on its diagonal is positive definite."""
+        """Tell whether the matrix with this on its diagonal is positive definite."""
         if len(shift) <= SMALL:
             whole = self._penalized.toarray()
             whole[np.diag_indices(len(whole))] += shift

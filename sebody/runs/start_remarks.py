@@ -1,4 +1,4 @@
-"""What a run says of its start: initial velocities it does not have, bodies that fall."""
+"""Remarks of a run on its start: initial velocities it does not have, bodies that fall."""
 
 from numpy.typing import NDArray
 
@@ -20,7 +20,7 @@ def start_remarks(model: Mechanism, numbering: Numbering, state: State) -> dict[
 
 
 def _falling(model: Mechanism) -> str:
-    """What a run says of bodies that start from rest where they are not connected to the ground."""
+    """Remark on bodies that start from rest where they are not connected to the ground."""
     if not model.gravity_field.any():
         return ""
     names = [name for group in untied(model) for name in group

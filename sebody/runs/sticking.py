@@ -14,7 +14,7 @@ RUN = "run the model with damping until it rests"
 
 
 def in_turns(run: Simulation, spin: Spin) -> str:
-    """What changes between sticking and sliding in Newton's iteration, or nothing, in words.
+    """Changes between sticking and sliding in Newton's iteration, or nothing, in words.
 
     From the state of the run, which is put back.
     """

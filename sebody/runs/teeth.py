@@ -1,4 +1,4 @@
-"""What the teeth of gears do to small motion: whether there are some, and how they soften shafts.
+"""Effect of the teeth of gears on small motion: whether there are some, and how they soften shafts.
 
 The default stiffness of teeth is one that steps follow, not one of steel. A vibration of the model
 with stiff teeth passes moments mu through them, with ``(K - w^2 M) x = -R^T mu`` and the rows R of
@@ -64,7 +64,7 @@ def teeth_remarks(run: Gears, M: NDArray | None = None, K: NDArray | None = None
 
 
 def _loose(run: Gears, gear: Element) -> str:
-    """What is said of teeth that carry no load and have no stiffness without."""
+    """Remark on teeth that carry no load and have no stiffness without."""
     memory = dict(zip(element_kernel(gear.kind).MEMORY,
                       run.state.frames[run.numbering.memories[gear]], strict=True))
     if gear.number("exponent") == 1.0 or not without_play(gear) or memory["depth"] > ROUNDED:

@@ -34,7 +34,7 @@ class Tensions(NamedTuple):
         return cls(bodies, own, motions(run.model, run.numbering, bodies.values()))
 
     def spurious(self, run: Simulation) -> str:
-        """What is wrong with an equilibrium, empty if nothing is.
+        """Fault of an equilibrium, empty if there is none.
 
         Beyond the limit of a body that is clamped nothing needs to be wrong but its stiffness.
         """
@@ -69,5 +69,5 @@ class Tensions(NamedTuple):
 
 
 def _unstable(run: Simulation) -> bool:
-    """Whether a motion that the constraints allow has a negative stiffness."""
+    """Tell whether a motion that the constraints allow has a negative stiffness."""
     return not Stiffness(run, derivative(run, 0.0, 0.0, 1.0), 0.0).stable()

@@ -1,4 +1,4 @@
-"""What error is allowed."""
+"""Error that is allowed."""
 
 from __future__ import annotations
 

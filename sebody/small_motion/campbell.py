@@ -64,7 +64,7 @@ class Campbell:
         return tabular.text(*self._table())
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return tabular.titled(*self._table())
 
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:
@@ -125,7 +125,7 @@ class Campbell:
         return save_campbell(path, *self.drawn(multiples))
 
     def drawn(self, orders: NDArray) -> tuple[Diagram, NDArray, NDArray]:
-        """What pictures show: the diagram, orders, and the crossings with them that are marked."""
+        """Contents of pictures: the diagram, orders, and the crossings that are marked."""
         marked = np.zeros((0, 2))
         if self.frame != "turning":
             found = self.crossings(orders)

@@ -159,7 +159,7 @@ def _without_mass(M: NDArray, C: NDArray, K: NDArray) -> _Pairs:
 
 def _rounding(M: NDArray, C: NDArray, K: NDArray, values: NDArray, right: NDArray, left: NDArray
               ) -> NDArray:
-    """What rounding of the matrices moves eigenvalues by; of double ones by the root of it."""
+    """Shift of eigenvalues by rounding of the matrices; of double ones by the root of it."""
     x, y, v = np.abs(right), np.abs(left), np.abs(values)
     change = EPS * sum(factor * np.einsum("ij,ik,kj->j", y, np.abs(A), x)
                        for factor, A in ((1.0, K), (v, C), (v * v, M)))

@@ -37,7 +37,7 @@ RIGID = 1e-6            # of the highest frequency, or of 1 / until: below it mo
 
 
 class EnergyGain(NamedTuple):
-    """What a run may gain, relative to the energy of its vibrations; see `energy_gain`."""
+    """Gain that a run may have, relative to the energy of its vibrations; see `energy_gain`."""
 
     energy: float       # of the vibrations, once the loads have acted
     omega: float        # root mean square of their angular frequencies, weighted by energy [1/time]

@@ -53,7 +53,7 @@ class FrequencyResponse:
         return tabular.text(self._title(), self._heads(), self._rows())
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return tabular.titled(self._title(), self._heads(), self._rows())
 
     def _heads(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ STILL = 1e-9        # of a motion's size: what rotates it in the axes of a spin 
 
 
 class Input(NamedTuple):
-    """What a unit of an input does."""
+    """Effect of a unit of an input."""
 
     name: str
     pushes: NDArray         # (3, n) f0, f1, f2 on the unknowns, in their own axes
@@ -64,7 +64,7 @@ def found(run: Simulation | Result, spin: Spin, name: str) -> Input:
 
 
 def _known(run: Simulation | Result) -> dict[str, Element | Motion]:
-    """What may be an input, by name."""
+    """Possible inputs, by name."""
     model = run.model
     elements = [one for one in (*model.loads, *model.constraints)
                 if one.time_function is not None and one.law is None]

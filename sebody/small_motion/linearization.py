@@ -147,7 +147,7 @@ class Vibrations(NamedTuple):
         return mode_tables.text(self._title, 1j * self.omega)
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return mode_tables.html(self._title, 1j * self.omega)
 
     @property
@@ -256,7 +256,7 @@ class Modes(NamedTuple):
         return mode_tables.text(self._title, self.values)
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return mode_tables.html(self._title, self.values)
 
     @property

@@ -11,7 +11,7 @@ ROUNDING = 1e-12    # damping ratio that is none
 
 
 def frequencies(values: NDArray) -> NDArray:
-    """Of eigenvalues, in cycles per unit of time: Hz where it is the second."""
+    """Frequencies of eigenvalues, in cycles per unit of time: Hz where it is the second."""
     return np.asarray(values).imag / (2 * np.pi)
 
 

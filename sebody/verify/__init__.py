@@ -1,1 +1,1 @@
-"""What confirms this package: kernels, known limits, numbers of others, measurements."""
+"""Confirmations of this package: kernels, known limits, numbers of others, measurements."""

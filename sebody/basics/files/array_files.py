@@ -48,7 +48,7 @@ def opened(path: str | Path, what: str, remedy: str, suffixes: Sequence[str] = (
 
 
 def json_of(reader: Reader, name: str) -> Any:
-    """What a member says that is a JSON text.
+    """Contents of a member that is a JSON text.
 
     Raises
     ------

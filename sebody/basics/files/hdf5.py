@@ -26,7 +26,7 @@ def guarded(content: bytearray) -> bytearray:
 
 
 def is_hdf5(path: Path) -> bool:
-    """Whether a file is one, whatever its name is.
+    """Tell whether a file is one, whatever its name is.
 
     The library may not end over a damaged file, so files of ours have a checksum.
 

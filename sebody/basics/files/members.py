@@ -1,4 +1,4 @@
-"""What the members of a file of named arrays must be: a table that they are compared with.
+"""Requirements of the members of a file of named arrays: a table that they are compared with.
 
     headers -> names, types, shapes -> memory -> values -> range, order
 
@@ -35,7 +35,7 @@ class Header(NamedTuple):
 
 
 class Member(NamedTuple):
-    """What a member must be.
+    """Requirements of a member.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ def text(path: str | os.PathLike, what: str, remedy: str) -> str:
 
 
 def parsed(json_text: str) -> Any:
-    """What a JSON text says.
+    """Contents of a JSON text.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def parsed(json_text: str) -> Any:
 
 
 def called(function: Callable[[], Found], path: Path, remedy: str) -> Found:
-    """What a reader of another package makes of a file; whatever it raises is said of the file.
+    """Result of a reader of another package; whatever it raises is said of the file.
 
     Raises
     ------

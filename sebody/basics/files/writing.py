@@ -93,7 +93,7 @@ def _beside(path: Path) -> Path:
 
 
 def _prefix(path: Path) -> str:
-    """What names of unfinished files of a path begin with."""
+    """Beginning of names of unfinished files of a path."""
     return f".sebody-{crc32(path.name.encode()):08x}-"
 
 

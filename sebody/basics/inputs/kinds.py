@@ -20,7 +20,7 @@ def flag(value: Any, what: str) -> bool:
 
 
 def mapping(value: Any, what: str, remedy: str) -> dict:
-    """What a dict or other mapping holds.
+    """Contents of a dict or other mapping.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def instance(value: Any, what: str, kind: type[Kind] | UnionType, remedy: str) -
 
 
 def items(value: Any, what: str, remedy: str) -> list:
-    """What a list, tuple or other iterable holds; a text is none.
+    """Contents of a list, tuple or other iterable; a text is none.
 
     Raises
     ------

@@ -50,7 +50,7 @@ class Choice(NamedTuple):
     dropped: bool = False
 
     def poorer(self, other: "Choice") -> bool:
-        """Whether it has no more of anything than another."""
+        """Tell whether it has no more of anything than another."""
         mine, others = self.step, other.step
         coarser = (mine.h >= others.h if mine.local is None is others.local else
                    mine.local is not None and others.local is not None
@@ -85,7 +85,7 @@ class Change(NamedTuple):
 
 
 def changes(part: Part, form: Form) -> list[Change]:
-    """What makes a form of a part from the given one."""
+    """Changes that make a form of a part from the given one."""
     given, words = part.given, []
     if part.beam is not None:
         if form.rigid:

@@ -1,4 +1,4 @@
-"""What a run costs, predicted: operations of the kernels, scaled by measured runs.
+"""Predicted cost of a run: operations of the kernels, scaled by measured runs.
 
 A step takes so many Newton iterations, each an evaluation of every element and a solution. The
 operations of an evaluation are those that the generated kernels declare, `EFFORT` how long the
@@ -84,7 +84,7 @@ class Cost:
         self._variable: tuple[float, float] | None = None   # local tolerance, iterations
 
     def operations(self, choice: Choice) -> float:
-        """Of one evaluation."""
+        """Operations of one evaluation."""
         return self._rest + (0.0 if choice.shared else self._joints) + sum(
             of_form(part, form, choice.planar)
             for part, form in zip(self._parts, choice.forms, strict=True))

@@ -1,4 +1,4 @@
-"""What errors are expected: indicators, corrected by what runs have shown.
+"""Expected errors: indicators, corrected by what runs have shown.
 
 The error of a choice is the root of the sum of squares of what its forms and its step contribute,
 which have different directions and times. An indicator may be off
@@ -60,7 +60,7 @@ class Estimates:
         self._seen: dict[Step, list[float]] = {}      # contributions of steps that were run
 
     def raw(self, k: int, form: Form) -> dict[str, float]:
-        """What the indicators say of a form of the k-th part."""
+        """Indicated errors of a form of the k-th part."""
         if (k, form) not in self._raw:
             part = self._parts[k]
             self._raw[k, form] = {} if form == part.detailed else indicated(
@@ -72,7 +72,7 @@ class Estimates:
         return self._measured.get((k, form))
 
     def measured(self, k: int) -> bool:
-        """Whether a form of the k-th part was tried."""
+        """Tell whether a form of the k-th part was tried."""
         return any(place == k for place, _ in self._measured)
 
     def of_form(self, k: int, form: Form) -> list[Contribution]:
@@ -168,7 +168,7 @@ def _power(errors: list[float], shares: list[float], wanted: float) -> float:
 
 
 def _rest(error: float, measured: float) -> float:
-    """What is left of an error without a part that was measured."""
+    """Rest of an error without a part that was measured."""
     return max(float(np.sqrt(max(error**2 - measured**2, 0.0))), CAUTION * error)
 
 

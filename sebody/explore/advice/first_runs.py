@@ -1,4 +1,4 @@
-"""What a search begins with: runs of the reference model with several steps, and guards."""
+"""Beginning of a search: runs of the reference model with several steps, and guards."""
 
 from dataclasses import replace
 

@@ -21,7 +21,7 @@ FEWEST_ELEMENTS = 16                    # of a whole beam: two of each body of e
 
 
 class Form(NamedTuple):
-    """What a part of a model is built as."""
+    """Form in which a part of a model is built."""
 
     rigid: bool
     bodies: int         # superelements of a beam from end to end
@@ -36,7 +36,7 @@ class Form(NamedTuple):
         return part.detailed._replace(bodies=1, modes=0)
 
     def poorer(self, other: "Form") -> bool:
-        """Whether no option of this form is more detailed than that of another."""
+        """Tell whether no option of this form is more detailed than that of another."""
         return self.rigid or (
             not other.rigid and self.bodies <= other.bodies and self.modes <= other.modes
             and _rank(self) <= _rank(other)
@@ -44,7 +44,7 @@ class Form(NamedTuple):
 
 
 def _rank(form: Form) -> int:
-    """Of the inertia option: a higher one describes more of the motion."""
+    """Rank of the inertia option: a higher one describes more of the motion."""
     return INERTIA_OPTIONS[form.inertia].rank
 
 
@@ -76,7 +76,7 @@ class Part:
 
     @property
     def planar(self) -> bool:
-        """Whether it is in a plane."""
+        """Tell whether it is in a plane."""
         return self.body.planar
 
     def superelements(self, form: Form) -> list[str]:

@@ -88,7 +88,7 @@ def _near(times: NDArray, others: NDArray, distance: float) -> NDArray:
 
 
 class Scales(NamedTuple):
-    """What a run moves by: travel and speeds of positions, speed of rotations, force, duration."""
+    """Scales of a run: travel and speeds of positions, speed of rotations, force, duration."""
 
     travel: float
     speed: float
@@ -148,7 +148,7 @@ class Growth(NamedTuple):
 
     @property
     def doubt(self) -> Doubt:
-        """What a disturbance of a real system would make of the motion, if it grows."""
+        """Effect of a disturbance of a real system on the motion, if it grows."""
         growing = self.factor > GROWTH * self.drift
         return Doubt(min(REAL * self.factor, 1.0) if growing else 0.0,
                      f"the motion is unstable: a small disturbance of all velocities and loads "
@@ -158,7 +158,7 @@ class Growth(NamedTuple):
 
     @property
     def remark(self) -> list[str]:
-        """What is said of a motion that grows a little, as over few times of an instability."""
+        """Remark on a motion that grows a little, as over few times of an instability."""
         if not TOLD * self.drift < self.factor <= GROWTH * self.drift:
             return []
         return [f"a small disturbance grows to {self.factor:.2g} times its size until the end: "

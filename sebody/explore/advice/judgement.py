@@ -1,4 +1,4 @@
-"""Whether the reference is good enough for a tolerance, and what helps where it is not."""
+"""Judgement of the reference for a tolerance, and remedies where it is not good enough."""
 
 from collections.abc import Mapping
 

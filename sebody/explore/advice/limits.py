@@ -21,7 +21,7 @@ FALL = 0.1      # of an error by omitted modes, with each doubling of their numb
 
 @lru_cache(maxsize=1)
 def limits(lab: Laboratory) -> list[Doubt]:
-    """Of all parts, the largest first; of beams measured where the estimate casts doubt."""
+    """Limits of theory of all parts, the largest first; of beams measured in case of doubt."""
     recorded = lab.estimates.recorded
     listed, doubtful = [], []
     for part in lab.parts:
@@ -46,7 +46,7 @@ def include(lab: Laboratory) -> None:
 
 
 def _divided(lab: Laboratory, parts: list[Part]) -> Doubt:
-    """What twice as many bodies in some beams change, with the same step: by runs."""
+    """Change by twice as many bodies in some beams, with the same step: by runs."""
     whole, names = lab.builder.build(lab.detailed), ", ".join(part.name for part in parts)
     for part in parts:
         form = part.detailed

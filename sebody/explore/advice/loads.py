@@ -25,7 +25,7 @@ SIDE = 1e-9             # of a sample: a value just before a corner
 
 
 class Missed(NamedTuple):
-    """What steps miss of a load or drive: its name, the share, and where most is missed."""
+    """Share of a load or drive that steps miss: its name, the share, and where most is missed."""
 
     name: str
     share: float

@@ -46,7 +46,7 @@ class Measure(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What of the history counts, as behind its name."""
+        """Part of the history that counts, as behind its name."""
         cut = "" if self.cut is None else f"< {self.cut:g} Hz"
         return f"{cut} {self.kind}".strip()
 
@@ -62,7 +62,7 @@ class Measure(NamedTuple):
         return sosfiltfilt(sections, history, axis=0, padlen=padding)
 
     def size(self, history: NDArray) -> float:
-        """What differences are relative to: the largest change from the start, or the mean one."""
+        """Size that differences are relative to: largest change from the start, or mean one."""
         changes = lengths(history - history[0])
         return float(np.sqrt(np.mean(changes**2)) if self.kind == "rms" else changes.max())
 

@@ -1,4 +1,4 @@
-"""What advice is: the model, its numbers, and all runs that led to it."""
+"""Advice: the model, its numbers, and all runs that led to it."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -54,7 +54,7 @@ class Unreached(InputError):
 
 
 class Reason(NamedTuple):
-    """What was chosen of a part, of the whole model or of the run, and why.
+    """Choice of a part, of the whole model or of the run, and why.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class Advice:
 
     @property
     def confirmed(self) -> bool:
-        """Whether the error is within the tolerance, of a reference good to half of it."""
+        """Tell whether the error is within the tolerance, of a reference good to half of it."""
         return self.error <= self.tolerance and self.doubt <= TRUSTED * self.tolerance
 
     def __repr__(self) -> str:
@@ -199,7 +199,7 @@ class Advice:
         return "\n".join([*own, *imports, "", *given[len(own):], *self.lines, run])
 
     def summary(self) -> str:
-        """What was chosen and why, the time it saves, and the error."""
+        """Choices and reasons, the time they save, and the error."""
         return "\n".join([
             *([self.kept] if self.kept else []),
             *map(str, self.reasons),

@@ -1,4 +1,4 @@
-"""What is to be kept: histories of results by name, and frequencies of small motion."""
+"""Quantities that are to be kept: histories of results by name, and frequencies of small motion."""
 
 import re
 import warnings
@@ -180,6 +180,6 @@ def difference(one: Values, other: Values, sizes: list[float], stride: tuple[int
 
 
 def sizes_of(values: Values) -> list[float]:
-    """What differences of each history are relative to."""
+    """Sizes that differences of each history are relative to."""
     return [one.size(history) for one, history in zip(values.measures, values.histories,
                                                       strict=True)]

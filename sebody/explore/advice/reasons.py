@@ -19,7 +19,7 @@ WHOLE = {"planar": ("planar", "it is symmetric about the plane"),
 
 
 def reasons(search: Search, choice: Choice) -> list[Reason]:
-    """Of the model, of every part and of the step."""
+    """Reasons of the model, of every part and of the step."""
     lab, sentences = search.lab, []
     for name, (chosen, why) in WHOLE.items():
         if getattr(choice, name):
@@ -47,7 +47,7 @@ def _of_part(lab: Laboratory, k: int, part: Part, form: Form, untried: list[str]
 
 
 def _why(lab: Laboratory, part: Part, form: Form, axis: str) -> tuple[str, str]:
-    """What was chosen on an axis, and the number behind it."""
+    """Choice on an axis, and the number behind it."""
     recorded = lab.estimates.recorded
     if axis == "modes":
         return f"{form.modes}", _slowness(lab, part, form)
@@ -106,7 +106,7 @@ def _times(ratio: float) -> str:
 
 
 def neighbours(search: Search, choice: Choice) -> list[str]:
-    """What would be chosen at a tolerance ten times tighter or looser."""
+    """Choices at a tolerance ten times tighter or looser."""
     sentences = []
     for factor in (0.1, 10.0):
         tolerance = factor * search.tolerance

@@ -21,7 +21,7 @@ LEFT = 1.0 / 16.0           # of the change of an extrapolated value, by halving
 
 
 class Reference(NamedTuple):
-    """What runs are compared with.
+    """Reference that runs are compared with.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a search has found, as advice."""
+"""Advice from what a search has found."""
 
 from math import ceil
 from time import process_time
@@ -43,7 +43,7 @@ def conclusion(search: Search, found: Tried, given: Tried | None = None,
 
 
 def _kept(search: Search, found: Tried) -> str:
-    """What is kept how well, in the quantity's unit, when it is worst, and what limits it."""
+    """Quality of what is kept, in the quantity's unit, when it is worst, and what limits it."""
     worst = found.worst
     if not worst.quantity or found.error == float("inf"):
         return ""
@@ -67,7 +67,7 @@ def _warnings(search: Search, found: Tried) -> tuple[str, ...]:
 
 
 def _saved(search: Search, seconds: float, given: Tried) -> list[str]:
-    """What a run saves against the reference model and the given one, and what that took."""
+    """Saving of a run against the reference model and the given one, and what that took."""
     lab = search.lab
     detailed: Choice = lab.detailed
     whole = next(one for one in lab.tried if one.choice == detailed).seconds

@@ -115,7 +115,7 @@ class Laboratory:
 
     @property
     def unstable(self) -> bool:
-        """Whether a disturbance grows: then no symmetry may be assumed."""
+        """Tell whether a disturbance grows: then no symmetry may be assumed."""
         return any(one.error > 0.0 for one in self.doubts[1:])
 
     def run_detailed(self, h: float) -> Run:

@@ -101,12 +101,12 @@ class Search:
         return of_form(part, form, self.planar)
 
     def _may_do(self, group: list[int], form: Form) -> bool:
-        """Whether a form of some parts may be good enough, as far as it is known."""
+        """Tell whether a form of some parts may be good enough, as far as it is known."""
         estimates = [one for k in group for one in self.lab.estimates.of_form(k, form)]
         return least(estimates) <= SHARE * self.tolerance
 
     def spent(self) -> bool:
-        """Whether the budget is used up."""
+        """Tell whether the budget is used up."""
         return self.lab.spent() > self.budget
 
     @property
@@ -130,7 +130,7 @@ class Search:
                 setattr(self, name, True)
 
     def _applies(self, choice: Choice) -> bool:
-        """Whether a choice can be made, differs from that before, and has kernels of its own."""
+        """Tell if a choice can be made, differs from that before, and has kernels of its own."""
         before = self.lab.builder.make(self.base)
         try:
             after = self.lab.builder.make(choice)
@@ -290,7 +290,7 @@ class Search:
                      and judged(self.lab.estimates.contributions(one)) <= tolerance), None)
 
     def _excludes(self, failed: Choice, one: Choice) -> bool:
-        """Whether a choice that was not enough says that another one is not, either.
+        """Tell whether a choice that was not enough says that another one is not, either.
 
         Vibrations of the reference model need shorter steps than simplified models may need.
         """
@@ -305,7 +305,7 @@ class Search:
         return ORDER_FACTOR / (ORDER_FACTOR - 1.0) * abs(coarse.error - fine.error)
 
     def _confirmed(self, found: Tried) -> bool:
-        """Whether the error stays within the tolerance with half the step."""
+        """Tell whether the error stays within the tolerance with half the step."""
         half = found.choice._replace(step=found.choice.step.finer())
         if half.step.local is None and half.step.h < min(self.lab.bases):
             return True

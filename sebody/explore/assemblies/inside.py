@@ -1,4 +1,4 @@
-"""What of a model may be inside a superelement, and the model without what is outside of it.
+"""Parts of a model that may be inside a superelement, and the model without those outside.
 
 Springs, dampers, joints, rigid parts, stops, contacts and friction may. Supports of interfaces and
 loads on them belong to the model that the body is put in; everything else is refused by name.
@@ -116,6 +116,6 @@ def freed(model: Model, interfaces: Interfaces) -> Freed:
 
 
 def _supports(model: Model, joint: Joint, held: set[DofBlock]) -> bool:
-    """Whether a joint holds interfaces alone, to the ground; one between interfaces is inside."""
+    """Tell if a joint holds interfaces alone, to the ground; one between interfaces is inside."""
     ends = [block for one in joint.constraints for block in one.dof_blocks]
     return joint.to in model.grounds and all(t in held or t.fixed for t in parents(ends))

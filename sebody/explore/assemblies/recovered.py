@@ -20,7 +20,7 @@ _DOFS = {2: ("x", "y", "rz"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 
 
 class Inside(NamedTuple):
-    """What is recovered of an assembly, and which of its FE nodes are of what, in words."""
+    """Recovered quantities of an assembly, and which of its FE nodes are of what, in words."""
 
     recovery: Recovery
     numbers: str

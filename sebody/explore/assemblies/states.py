@@ -75,7 +75,7 @@ def _of_model(model: Model, interfaces: Interfaces, preload: bool) -> tuple[Resu
 
 
 def _rests(run: Simulation) -> bool:
-    """Whether nothing inside is under stress, nor loaded: its forces would move it by nothing."""
+    """Tell if nothing inside is under stress, nor loaded: its forces would move it by nothing."""
     if any(load.kind.removeprefix(PLANAR) in OUTER for load in run.model.loads):
         return False
     forces, linear = rotating(run, Spin.of(run.model, None))[1], linearize(run)

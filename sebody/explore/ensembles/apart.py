@@ -76,7 +76,7 @@ def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
 
 
 def _words(in_lanes: np.record) -> NDArray:
-    """Of the scalars of a record in lanes their places, and 1 where members have their own."""
+    """Places of the scalars of a record in lanes, and 1 where members have their own."""
     return np.array([(offset // 8, own.subdtype is not None)
                      for own, offset in in_lanes.dtype.fields.values()], dtype=np.int64)
 

@@ -17,7 +17,7 @@ from sebody.engine.vectors import copy
 
 @dataclass(frozen=True, eq=False)
 class Beginning(Arrays):
-    """What a run begins with, beside the arrays of a thread that get it.
+    """Beginning of a run, beside the arrays of a thread that get it.
 
     ==================  ============================================================================
     model, floats       numbers of the model as built, and those of the thread

@@ -1,4 +1,4 @@
-"""Whether the runs of an ensemble are made eight at a time or one by one: a table of facts.
+"""Choice between runs that are made eight at a time and one by one: a table of facts.
 
 The choice depends on the model, its parameters and the number of steps of all runs, never on which
 runs are asked for together or on what was compiled before: a run has the same bits in both.
@@ -50,7 +50,7 @@ def why_one_by_one(template: Simulation) -> str:
 
 
 def matrices_at_once(template: Simulation) -> bool:
-    """Whether matrices of eight members are made at once: members want them in nearly every step.
+    """Tell if matrices of eight members are made at once: members want them in nearly every step.
 
     So they do in large models of bodies that rotate against each other.
     """

@@ -1,4 +1,4 @@
-"""What the first ensemble in lanes compiles, side by side in several processes."""
+"""Compilation for the first ensemble in lanes, side by side in several processes."""
 
 from collections.abc import Iterable
 from pathlib import Path

@@ -190,7 +190,7 @@ class Ensemble:
         return found, values, runs, last, outputs_of(outputs, last * self.h)
 
     def _image(self, key: tuple[str, ...], found: dict[str, Handle]) -> Image:
-        """What runs begin with that these parameters vary in, by the names that were given."""
+        """Beginnings of runs that vary in these parameters, by the names that were given."""
         with self._lock:
             if key not in self._images:
                 self._images[key] = Image(self._template, found)

@@ -26,7 +26,7 @@ from sebody.runs.folds import Folds, fold_all, forget, write_all
 
 @dataclass(frozen=True, eq=False)
 class Groups(Arrays):
-    """What the groups of a thread are made with, one after the other.
+    """Arrays that the groups of a thread are made with, one after the other.
 
     ==================  ============================================================================
     routine             (1,) address of `engine.lanes.loop.advance`
@@ -67,7 +67,7 @@ def address_of_loop(given_to_loop: tuple, scheme: Scheme) -> int:
 
 def new_groups(routine: int, given_to_loop: tuple, given: Beginning, places: NDArray,
                folds: Folds) -> Groups:
-    """What groups are made with.
+    """Arrays that groups are made with.
 
     Parameters
     ----------

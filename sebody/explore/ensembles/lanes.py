@@ -297,7 +297,7 @@ class Lanes:
 
     @property
     def ended(self) -> bool:
-        """Whether the runs that were made last were made to their end, and not stopped before."""
+        """Tell if the runs that were made last were made to their end, and not stopped before."""
         return self._reached == self._last
 
     @property

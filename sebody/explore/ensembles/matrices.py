@@ -1,4 +1,4 @@
-"""What the matrices of eight members are made in: one by one, or all at once."""
+"""Work memory of the matrices of eight members: one by one, or all at once."""
 
 from dataclasses import replace
 
@@ -41,7 +41,7 @@ def alone(copies: Copies, lanes: NDArray) -> Alone:
 
 
 def together(image: Image, system: System, state: State, begun: NDArray) -> Together:
-    """What the matrices of all members are made in.
+    """Work memory of the matrices of all members.
 
     Parameters
     ----------

@@ -97,7 +97,7 @@ class Copies:
 
     @property
     def starts_in_python(self) -> bool:
-        """Whether starts have Python between them: for row exchanges, or for samples."""
+        """Tell whether starts have Python between them: for row exchanges, or for samples."""
         return bool(self.system.massless[0]) or bool(self.sampling.samples)
 
     def _advance_start(self) -> int:
@@ -156,7 +156,7 @@ class Copies:
         return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
     def _beginning(self) -> beginning.Beginning:
-        """What runs begin with; scalars and flags are not in `floats`."""
+        """Beginning of runs; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
         whole = {name: numbers_of(getattr(state, name)) for name in ("control", "clock", "guard")}
         whole["moved"] = state.moved

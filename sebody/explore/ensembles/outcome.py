@@ -1,4 +1,4 @@
-"""What many runs gave."""
+"""Outcome of many runs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sebody.basics.spelling import unknown
 
 @dataclass(repr=False)
 class Outcome:
-    """What runs gave.
+    """Outcome of runs.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Outcome:
         return tabular.text(*self._table())
 
     def _repr_html_(self) -> str:
-        """What notebooks show."""
+        """HTML that notebooks show."""
         return tabular.titled(*self._table())
 
     def _table(self) -> tuple[str, tuple[str, ...], list[tuple[str, ...]]]:

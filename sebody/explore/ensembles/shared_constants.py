@@ -44,7 +44,7 @@ def kernels_of_batches(image: Image) -> list[tuple[str, Own, bool]]:
 
 
 def own_parts(image: Image) -> dict[int, Own]:
-    """Of batches of bodies that share constants, the parts of which members have their own."""
+    """Parts of shared constants of batches of bodies of which members have their own."""
     varied, found = varied_numbers(image), {}
     for packed in packed_rows(image):
         varied[packed.place] = False
@@ -67,7 +67,7 @@ def straight_matrices(image: Image) -> Iterator[tuple[slice, int]]:
 
 
 def _straight_parts(image: Image, batch: int, own: Own) -> Iterator[tuple[NDArray, Part, Counts]]:
-    """Of every element of a batch, these matrices; index row, part and counts of the body."""
+    """These matrices of every element of a batch; index row, part and counts of the body."""
     from sebody.kernels.lanes.text import straight_parts  # imports the lanes
 
     for index in rows_of(image, batch):
@@ -92,7 +92,7 @@ def packed_rows(image: Image) -> Iterator[Packed]:
 
 
 def varied_numbers(image: Image) -> NDArray:
-    """Whether parameters change a number, of all numbers of a run."""
+    """Tell whether parameters change a number, of all numbers of a run."""
     varied = np.zeros(image.floats.size, dtype=bool)
     varied[image.lines.slots] = True
     return varied

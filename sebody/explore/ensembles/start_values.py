@@ -76,12 +76,12 @@ class Image:
 
     @property
     def linear(self) -> bool:
-        """Whether runs can begin with a copy."""
+        """Tell whether runs can begin with a copy."""
         return self.lines is not None
 
     @property
     def factored(self) -> bool:
-        """Whether runs begin with the factors of masses and constraints of the model as built.
+        """Tell whether runs begin with the factors of masses and constraints of the model as built.
 
         Its inverse is that of its start, which is not written where the start needs another way.
         Runs have other masses where parameters change them: accelerations would be as good as the
@@ -96,7 +96,7 @@ class Image:
                 and one.state.control.regularized == 0 and bool(one.state.inverse.any()))
 
     def _can_copy(self, handles: Mapping[str, Handle]) -> bool:
-        """Whether the start needs accelerations alone: no fitted velocities."""
+        """Tell whether the start needs accelerations alone: no fitted velocities."""
         one = self.template
         constrained = bool(one.numbering.multipliers) or bool(one.system.prescribed.size)
         touched = {handle.touches for handle in handles.values()}
@@ -130,7 +130,7 @@ class Image:
 
 
 def _alike(group: System | State, other: System | State, sizes_only: bool = False) -> bool:
-    """Whether two groups have the same integers, and floats of the same sizes."""
+    """Tell whether two groups have the same integers, and floats of the same sizes."""
     if group._facts != other._facts or any(
             a.shape != b.shape for a, b in zip(arrays_of(group), arrays_of(other), strict=True)):
         return False

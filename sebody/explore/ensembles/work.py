@@ -97,7 +97,7 @@ class Work:
             self.outcome.failures.setdefault(int(run), INTERRUPTED)
 
     def _work(self) -> None:
-        """Of a thread: take runs until none is left."""
+        """Take runs until none is left, in a thread."""
         try:
             copies = Copies(self.image) if self.image.linear else None
             lanes = self._lanes(copies)

@@ -29,7 +29,7 @@ class Inspection(NamedTuple):
 
     @property
     def usable(self) -> bool:
-        """Whether there is no defect."""
+        """Tell whether there is no defect."""
         return all(one.severity != "defect" for one in self.findings)
 
 

@@ -1,4 +1,4 @@
-"""What the numbers of a body mean: findings with remedies, and a verdict."""
+"""Meaning of the numbers of a body: findings with remedies, and a verdict."""
 
 from typing import NamedTuple
 
@@ -59,7 +59,7 @@ def verdict(findings: list[Finding]) -> str:
 
 
 def _refused(file: BodyFile) -> list[Finding]:
-    """What else keeps a model from taking the body, such as constants of another body."""
+    """Other reasons why a model cannot take the body, such as constants of another body."""
     try:
         file.body()
     except InputError as error:

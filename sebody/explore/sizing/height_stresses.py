@@ -29,7 +29,7 @@ LINEAR = "frame_axes", "material"       # inertia with forces that are linear in
 
 
 class Stresses(NamedTuple):
-    """Of a run, and their derivatives."""
+    """Stresses of a run, and their derivatives."""
 
     values: NDArray         # (elements,) largest normal stress of each at any time
     times: NDArray          # (elements,) when

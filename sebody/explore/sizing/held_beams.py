@@ -236,7 +236,7 @@ class Held:
         return y[:, :len(self.beam.order)] @ self.Psi.T - c @ self.Z.T
 
     def section_forces(self, fields: NDArray) -> NDArray:
-        """Of both ends of all elements, (t, elements, 2, 6)."""
+        """Section forces at both ends of all elements, (t, elements, 2, 6)."""
         return np.einsum("egfa,tea->tegf", self.elements.forces, fields[:, self.beam.dofs],
                          optimize=True)
 

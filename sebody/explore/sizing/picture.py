@@ -12,7 +12,7 @@ from sebody.pictures.plots import ACCENT, PALE, STYLE
 
 
 def draw(found: Any, path: str | Path) -> Path:
-    """Of a `Sizing`: heights along the beam, and the largest stress in each element; PNG."""
+    """Draw a `Sizing`: heights along the beam, and the largest stress in each element; PNG."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

@@ -175,7 +175,7 @@ def _begun(path: Path | None, text: str, made: Design) -> Table:
 
 def _text(build: Callable, fixed: Mapping[str, Any], outputs: Mapping[str, Output],
           made: Design, models: list[str]) -> str:
-    """What makes two sweeps the same: also the models, whatever file they are from."""
+    """Key of equal sweeps: also the models, whatever file they are from."""
     return json.dumps([getattr(build, "__module__", ""), getattr(build, "__qualname__", ""),
                        sorted((n, str(v)) for n, v in fixed.items()),
                        [(n, str(o)) for n, o in outputs.items()], made.text(), models])

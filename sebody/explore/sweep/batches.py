@@ -28,7 +28,7 @@ _kept: dict[tuple, tuple[Ensemble, float]] = {}
 
 
 class Plan(NamedTuple):
-    """What all runs of a sweep have in common."""
+    """Common parts of all runs of a sweep."""
 
     name: str                       # of this sweep: another process gets a new `build` every time
     build: Callable[..., Any]       # returns a Scene
@@ -47,7 +47,7 @@ class Batch(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What the runs of a batch gave."""
+    """Outcome of the runs of a batch."""
 
     rows: NDArray
     values: dict[str, NDArray]
@@ -97,7 +97,7 @@ def _built(plan: Plan, structure: tuple[tuple[str, Any], ...]) -> tuple[Ensemble
 
 
 def _scene(build: Callable[..., Any], given: Mapping[str, Any]) -> Any:
-    """What a scene's function returns.
+    """Scene that a function returns.
 
     Raises
     ------

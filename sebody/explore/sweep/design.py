@@ -18,7 +18,7 @@ MOST_RUNS = 10_000_000
 
 @dataclass(frozen=True)
 class Design:
-    """What the runs of a sweep have.
+    """Parameters of the runs of a sweep.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ class Table:
                          f"{', '.join([*self.parameters, *self.outputs])}")
 
     def has(self, columns: Mapping[str, NDArray]) -> bool:
-        """Whether its parameters are those of a design."""
+        """Tell whether its parameters are those of a design."""
         return columns.keys() == self.parameters.keys() and all(
             np.array_equal(_storable(self.parameters[name]), _storable(values))
             for name, values in columns.items())
@@ -149,7 +149,7 @@ class Table:
                 for name in outputs}
 
     def rounding(self, column: str) -> float:
-        """What is rounding in a column of the outputs: components of a vector share their size."""
+        """Rounding in a column of the outputs: components of a vector share their size."""
         values = np.abs(self.outputs[column.partition("[")[0]][self.good])
         return ROUNDING * float(np.max(values, initial=0.0))
 
@@ -245,7 +245,7 @@ def _number(value: object) -> str:
 
 
 def _members(headers: Mapping[str, members.Header]) -> dict[str, members.Member]:
-    """What a table with these members must have: parameters of any kind, outputs of any shape."""
+    """Requirements of a table with these members: parameters of any kind, outputs of any shape."""
     one = members.Member
     known = {"design": one((), "U"), "version": one((), "i"), "done": one(("runs",), "b"),
              "failure": one(("runs",), "U")}

@@ -1,4 +1,4 @@
-"""What a sweep varies, from texts: lists of values, ranges, and distributions to sample."""
+"""Variations of a sweep, from texts: lists of values, ranges, and distributions to sample."""
 
 import ast
 import re

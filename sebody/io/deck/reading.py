@@ -60,7 +60,7 @@ class Elements(NamedTuple):
 
 @dataclass(eq=False)
 class Deck:
-    """What a deck says, by the labels of nodes and elements and names in capitals."""
+    """Contents of a deck, by the labels of nodes and elements and names in capitals."""
 
     path: Path
     nodes: dict[int, tuple[float, float, float]] = field(default_factory=dict)

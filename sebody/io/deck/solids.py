@@ -52,7 +52,7 @@ class Prestress(NamedTuple):
 
 
 class Solids(NamedTuple):
-    """What is known of the elements of a deck.
+    """Elements of a deck, as far as they are known.
 
     Parameters
     ----------

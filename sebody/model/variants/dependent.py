@@ -13,7 +13,7 @@ from sebody.model.sharing import can_share, share
 
 
 def is_held(position: DofBlock) -> bool:
-    """Whether a position is fixed, prescribed, or at the end of links that begin at such a one."""
+    """Tell if a position is fixed, prescribed, or at the end of links that begin at such a one."""
     return position.fixed if position.root is None else position.root.fixed
 
 
@@ -69,7 +69,7 @@ def make_dependent(model: Mechanism, node: Node, carrier: Node, keep: str, body:
 
 
 def _is_closed(node: Node, carrier: Node) -> bool:
-    """Whether a further link between two nodes closes a loop of links, the ground included."""
+    """Tell whether a further link between two nodes closes a loop of links, the ground included."""
     one, other = (dof_block(n, "position").parents()[0] for n in (node, carrier))
     if one is other and node.rotation is carrier.rotation:
         raise InputError(f"{node.name} and {carrier.name} are joined by rigid links already: they "

@@ -141,7 +141,7 @@ def _rates(old: Superelement, found: Released) -> NDArray:
 
 
 def _stiffens(body: Superelement, node: str) -> bool:
-    """Whether motions of a position make resultants, stresses that stiffen the body."""
+    """Tell whether motions of a position make resultants, stresses that stiffen the body."""
     place = [one.name for one in body.nodes].index(node)
     invariants = body.invariants
     return body.stiffening and invariants is not None and bool(

@@ -33,7 +33,7 @@ def _axis(one: Element, number: str = "") -> np.ndarray:
 
 
 def _sign(flat: Flattening, one: Element, number: str = "") -> float:
-    """Whether the angle counts as in the plane: 1, or -1 where it counts against it."""
+    """Tell whether the angle counts as in the plane: 1, or -1 where it counts against it."""
     return float(np.sign(flat.axial(_axis(one, number), f"the axis of {one.name!r}")))
 
 

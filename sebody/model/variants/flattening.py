@@ -12,7 +12,7 @@ _SAME = 1e-9            # a direction is in the plane, or normal to it, but for 
 
 
 class Flattening:
-    """What of a spatial model is in a plane, and its planar counterparts.
+    """Parts of a spatial model that are in a plane, and their planar counterparts.
 
     Parameters
     ----------
@@ -66,12 +66,12 @@ class Flattening:
         return components[2]
 
     def is_normal(self, direction: NDArray) -> bool:
-        """Whether a direction is normal to the plane."""
+        """Tell whether a direction is normal to the plane."""
         own = self.plane.axes.T @ direction
         return bool(np.abs(own[:2]).max() <= _SAME * np.linalg.norm(own))
 
     def is_inside(self, direction: NDArray) -> bool:
-        """Whether a direction is in the plane."""
+        """Tell whether a direction is in the plane."""
         own = self.plane.axes.T @ direction
         return bool(abs(own[2]) <= _SAME * np.linalg.norm(own))
 

@@ -84,7 +84,7 @@ def planar(model: Mechanism) -> Variant:
 
 
 def _of_bushings(model: Mechanism) -> str:
-    """What is not the same in the plane."""
+    """Bushings' terms that are not the same in the plane."""
     names = [one.name for one in model.loads
              if one.kind in ("bushing", "bearing") and np.any(one.constants["kt"])]
     return f"; moments of {', '.join(names)} follow angles, in space their sines" if names else ""
@@ -122,7 +122,7 @@ def _upright(vector: NDArray) -> NDArray:
 
 
 class _Flat(NamedTuple):
-    """What of a model is symmetric about a plane."""
+    """Parts of a model that are symmetric about a plane."""
 
     flat: Flattening
     model: Mechanism                    # planar, without superelements and loads

@@ -76,7 +76,7 @@ def can_be_shared(model: Mechanism) -> list[str]:
 
 
 def _is_free(model: Mechanism, node: Node) -> bool:
-    """Whether a node is no ground."""
+    """Tell whether a node is no ground."""
     return model.nodes.get(node.name) is node
 
 
@@ -105,7 +105,7 @@ def _can_share(model: Mechanism, joint: Joint, kind: str) -> bool:
 
 
 def _keeps_rate(one: DofBlock, other: DofBlock) -> bool:
-    """Whether an initial velocity that the user gave stays if the DOF blocks become one."""
+    """Tell whether an initial velocity that the user gave stays if the DOF blocks become one."""
     if not one.given or not np.any(one.rate):
         return True
     return other.solved and (not other.given or np.array_equal(one.rate, other.rate))

@@ -51,7 +51,7 @@ class Load(NamedTuple):
 
     @property
     def consequence(self) -> str:
-        """What else the body gets wrong."""
+        """Other errors of the body."""
         if self.force < 0.0:
             return ", and the body does not buckle at the right load"
         if self.folding > 0.0:
@@ -61,7 +61,7 @@ class Load(NamedTuple):
 
 
 class Axial(NamedTuple):
-    """What axial forces of a body are compared with; p positions, r rotations, n coordinates."""
+    """Limits of axial forces of a body; p positions, r rotations, n coordinates."""
 
     stiffness: NDArray      # (n, n)
     moved: NDArray          # (p, 3, n) displacements by y

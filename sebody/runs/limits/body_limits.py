@@ -24,7 +24,7 @@ class Finding(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """What the states of a body are compared with."""
+    """Numbers that the states of a body are compared with."""
 
     spin: float             # below which nothing is compared
     crooked: bool           # its mass is off the line of its nodes
@@ -85,7 +85,7 @@ def exceeded(body: Superelement, limits: Limits, y: NDArray, spins: NDArray, loc
 
 
 def flat(body: Superelement) -> Finding | None:
-    """Whether a frame follows positions that lie nearly on a line."""
+    """Tell whether a frame follows positions that lie nearly on a line."""
     spread, traits = _spread(body), FRAMES[body.frame].traits
     if traits.needs_rotations or traits.modes or body.reduced.planar or spread >= FLAT:
         return None
@@ -149,7 +149,7 @@ def _too_strong(body: Superelement, axial: Axial, y: NDArray) -> Iterator[Findin
 
 
 def remedy(body: Superelement) -> str:
-    """What to do about a spin, or an axial force."""
+    """Remedy for a spin, or an axial force."""
     if body.reduced.invariants is None:
         return "divide the body in two, or reduce it from an FE model with its mass"
     if body.inertia != "floating_field":
@@ -160,7 +160,7 @@ def remedy(body: Superelement) -> str:
 
 
 def _compared(limit: float, first: float) -> str:
-    """What a fast spin is compared with."""
+    """Limit that a fast spin is compared with."""
     if first < limit:
         return f"{first:.3g}, the body's first frequency with one node held"
     return f"{limit:.3g}, where it diverges"

@@ -61,7 +61,7 @@ def remarks(run: Recording) -> dict[str, str]:
 
 def _grown(part: Recording, h: float, kinetic: NDArray, strain: NDArray, potential: NDArray,
            work: NDArray) -> dict[str, str]:
-    """Whether energy grows that nothing supplies: of all that there is, or of vibrations."""
+    """Tell whether energy grows that nothing supplies: of all that there is, or of vibrations."""
     inner = kinetic + strain
     energy, largest = inner + potential, inner.max()
     grown = (increase(energy, work) - energy_balance.rounded(inner, potential)) / max(
@@ -118,7 +118,7 @@ def increase(energy: NDArray, work: NDArray, from_lowest: bool = True) -> float:
 
 
 def _guarded(run: Recording) -> dict[str, str]:
-    """What the guard against energy that grows has done."""
+    """Interventions of the guard against energy that grows."""
     guard, control = run.state.guard, run.state.control
     count = int(guard.rejections)
     if not count:
@@ -139,7 +139,7 @@ def _guarded(run: Recording) -> dict[str, str]:
 
 
 def _steps(run: Recording) -> dict[str, str]:
-    """Whether many steps were rejected, for other reasons than energy that grows."""
+    """Tell whether many steps were rejected, for other reasons than energy that grows."""
     steps = int(run.state.control.steps)
     cuts = int(run.state.control.cuts - run.state.guard.rejections)
     if cuts <= CUT * steps:
@@ -152,7 +152,7 @@ def _steps(run: Recording) -> dict[str, str]:
 
 
 def _constraints(part: Recording) -> dict[str, str]:
-    """Whether the constraints hold, rotational ones compared with one radian."""
+    """Tell whether the constraints hold, rotational ones compared with one radian."""
     equations: list[Element] = part.model.constraints
     extent = part.system.magnitude.max()
     turning = all(t.rotational for c in equations for t in c.dof_blocks)
@@ -166,7 +166,7 @@ def _constraints(part: Recording) -> dict[str, str]:
 
 
 def _vibrations(part: Recording, states: list[int], h: float, largest: float) -> dict[str, str]:
-    """Whether the fastest vibration that has energy takes too few steps a period."""
+    """Tell whether the fastest vibration that has energy takes too few steps a period."""
     if part.numbering.free > SMALL:
         return {}
     omega = max(_fastest(part, part.rows[k], EXCITED * largest) for k in states)

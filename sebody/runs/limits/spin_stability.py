@@ -1,4 +1,4 @@
-"""What a steady spin takes from the stiffness of one body.
+"""Stiffness that a steady spin takes from one body.
 
 In axes that spin with ``W n`` about a node of the body the kinetic energy is ``W^2`` times half a
 function of the reduced coordinates y. Its second derivative D acts against the stiffness: the body
@@ -40,7 +40,7 @@ ALIGNED = 1e-2      # rad: how far a principal axis may be off
 
 
 class Carriers(NamedTuple):
-    """What has velocities: places that move with y, and rotations that may turn with it."""
+    """Coordinates with velocities: places that move with y, rotations that may turn with it."""
 
     arms: NDArray           # (p, 3) from the pivot
     moved: NDArray          # (p, 3, n) displacements by y
@@ -203,7 +203,7 @@ def rows_of(body: ReducedBody) -> tuple[NDArray, NDArray]:
 
 
 def _principal(body: ReducedBody, node: int, axis: NDArray | None) -> bool:
-    """Whether an axis, (3,), is a principal one about a node; None counts as one."""
+    """Tell whether an axis, (3,), is a principal one about a node; None counts as one."""
     if axis is None or body.planar:
         return True
     J = _moments(body, node)

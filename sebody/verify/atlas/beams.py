@@ -42,7 +42,7 @@ def pressed(model: Model, load: float, follower: bool) -> Result:
 
 
 def grows(build: Callable[[], Result], spin: float | None = None) -> bool:
-    """Whether small motion about an equilibrium grows, or there is none."""
+    """Tell whether small motion about an equilibrium grows, or there is none."""
     try:
         return bool(modes(build(), spin).growth.max() > UNSTABLE)
     except (SimulationError, InputError):

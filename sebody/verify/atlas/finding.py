@@ -1,4 +1,4 @@
-"""What one case of the atlas says: theory, measurement, what the program does, and a picture."""
+"""Finding of one case of the atlas: theory, measurement, what the program does, and a picture."""
 
 import math
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ class Row(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether they agree."""
+        """Tell whether they agree."""
         if math.isinf(self.expected):
             return self.measured == self.expected
         return abs(self.measured - self.expected) <= self.within * (abs(self.expected) or 1.0)

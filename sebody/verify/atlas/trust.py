@@ -1,4 +1,4 @@
-"""What `advise` may confirm: loads between steps, damping, rotation, instability."""
+"""Cases that `advise` may confirm: loads between steps, damping, rotation, instability."""
 
 from collections.abc import Callable
 
@@ -124,7 +124,7 @@ def damping_by_division() -> Finding:
 
 
 def _ratios(model: Model) -> list[float]:
-    """Of the two slowest vibrations."""
+    """Ratios of the two slowest vibrations."""
     vibrations = modes(equilibrium(model))
     return list(vibrations.damping[vibrations.omega > 0.0][:2])
 

@@ -1,4 +1,4 @@
-"""What exact gradients of a run cost: sweeps of the hinged beam beside the run itself."""
+"""Cost of exact gradients of a run: sweeps of the hinged beam beside the run itself."""
 
 import statistics
 from warnings import catch_warnings, simplefilter

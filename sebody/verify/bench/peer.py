@@ -27,7 +27,7 @@ LINKS = (1, 4, 16, 64, 256)
 
 
 def available() -> bool:
-    """Whether Exudyn can be imported; does not import it."""
+    """Tell whether Exudyn can be imported; does not import it."""
     return find_spec("exudyn") is not None
 
 
@@ -40,7 +40,7 @@ def version() -> str | None:
 
 
 def told(scene: str | None = None) -> str:
-    """Whether a chart has points of Exudyn, and why not, in a sentence."""
+    """Tell whether a chart has points of Exudyn, and why not, in a sentence."""
     if scene not in BEAMS:
         return f"peers: {NAME} has models of {', '.join(BEAMS)} alone, none of this scene"
     return f"peers: {NAME} {version()}" if available() else f"peers: {NAME} is not installed"

@@ -39,7 +39,7 @@ SHEAR = 5.0 / 6.0
 
 
 class Run(NamedTuple):
-    """What a run of the peer yields."""
+    """Results of a run of the peer."""
 
     unknowns: int
     steps: int

@@ -12,14 +12,14 @@ MOST = 160      # characters of a reason
 
 
 class Advised(NamedTuple):
-    """What is advised, or why nothing is; `told` is a sentence for the chart."""
+    """Advice, or why there is none; `told` is a sentence for the chart."""
 
     advice: Advice | None
     told: str
 
     @property
     def step(self) -> Step:
-        """Of its run."""
+        """Step of its run."""
         local = None if self.advice.local is None else self.advice.local.relative
         return Step(self.advice.step, local)
 

@@ -103,7 +103,7 @@ def _measured(chart: "_Chart", tolerance: float) -> list[Study]:
 
 def _study(chart: "_Chart", k: int, best: Reference, kept: list[tuple], times: list[Times],
            found: Advised, tolerance: float) -> Study:
-    """Of one quantity."""
+    """Study of one quantity."""
     points = [Point(plan.family, plan.label, errors[k], one.quickest / chart.t_end,
                     result.numbering.free, plan.choice.step.h, result.iterations_per_step,
                     one.slowest / chart.t_end)

@@ -37,7 +37,7 @@ TITLE, FAMILY, NOTE = 60, 30, 110   # characters of a line of the title, of a fa
 
 
 class Panel(NamedTuple):
-    """What one pair of axes shows, see `draw`."""
+    """Contents of one pair of axes, see `draw`."""
 
     name: str
     points: list[Point]
@@ -203,7 +203,7 @@ def _level(axes, level: float, what: str, below: bool = False) -> None:
 
 
 def _legend(figure, every) -> None:
-    """Of all axes, below them, in as many columns as fit."""
+    """Legend of all axes, below them, in as many columns as fit."""
     entries = {}
     for axes in every:
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):

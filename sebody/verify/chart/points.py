@@ -41,7 +41,7 @@ class Point:
 
 
 class Study(NamedTuple):
-    """What a chart shows.
+    """Contents of a chart.
 
     Parameters
     ----------

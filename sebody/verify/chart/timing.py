@@ -17,7 +17,7 @@ LONG = 20.0             # seconds of all runs of one, after which it does not ru
 
 
 class Times(NamedTuple):
-    """Of the quickest and of the slowest of several runs [s]."""
+    """Times of the quickest and of the slowest of several runs [s]."""
 
     quickest: float
     slowest: float

@@ -58,5 +58,5 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
 
 
 def _of_laws(name: str) -> bool:
-    """Whether a kernel has products with the derivatives of a law."""
+    """Tell whether a kernel has products with the derivatives of a law."""
     return name.startswith(PRODUCTS + ELEMENT) and follows(load(name))

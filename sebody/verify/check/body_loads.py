@@ -36,7 +36,7 @@ def body_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
 
 
 def _forces(case: Case) -> NDArray:
-    """What the load does, ``-G``, by rotations of SciPy: its vectors turn with the frame."""
+    """Forces of the load, ``-G``, by rotations of SciPy: its vectors turn with the frame."""
     constants, R0 = constants_of(case), frame_rotation(case).as_matrix()
     P = AMPLITUDES[0] * constants["P"] + constants["columns"] @ case.loads[len(AMPLITUDES):]
     d, forces = case.dimension, P.copy()

@@ -18,7 +18,7 @@ FOLLOWING = (3, 2), (0, 0)      # slaved coordinates and resultants, by state: g
 
 
 def is_floating(case: Case) -> bool:
-    """Whether the kernel has the kinetic energy of the displacement field."""
+    """Tell whether the kernel has the kinetic energy of the displacement field."""
     return INERTIA_OPTIONS[case.module.INERTIA].field
 
 
@@ -86,7 +86,7 @@ def stiffness(case: Case, y: NDArray) -> NDArray:
 
 
 def first_moment(case: Case, y: NDArray) -> NDArray:
-    """Of the deformed body, about the origin of the frame, in its axes."""
+    """First moment of the deformed body, about the origin of the frame, in its axes."""
     constants = constants_of(case)
     moment = constants["c0"] + constants["moment_columns"][:, :case.dimension].T @ _whole(case, y)
     return _coordinates(case).turn @ moment

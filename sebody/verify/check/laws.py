@@ -35,7 +35,7 @@ OPEN = {"level": -9.0, "size": 0.01, "radius": 0.01, "upper": 99.0, "lower": -99
 
 
 def follows(module: ModuleType) -> bool:
-    """Whether a kernel has a law of friction or contact."""
+    """Tell whether a kernel has a law of friction or contact."""
     return bool({"bent", "bent_1", "rate"} & set(module.MEMORY))
 
 

@@ -34,7 +34,7 @@ def motion_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
 
 
 def moved(case: Case) -> dict[str, NDArray]:
-    """What the kernel writes, by name; the rotation as a matrix."""
+    """Numbers that the kernel writes, by name; the rotation as a matrix."""
     slices = MOTION.slices(case.counts)
     given = arguments(case)._replace(forces=np.zeros(MOTION.size(case.counts)))
     if called(case, RESIDUAL, given) != OK:

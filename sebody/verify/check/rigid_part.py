@@ -11,7 +11,7 @@ from sebody.verify.check.states import Case, along_path, constants_of, derivativ
 
 
 def has_rigid_part(case: Case) -> bool:
-    """Whether the kernel has a rigid part that turns by itself."""
+    """Tell whether the kernel has a rigid part that turns by itself."""
     option = INERTIA_OPTIONS[case.module.INERTIA]
     return option.rates and not option.field
 
@@ -29,7 +29,7 @@ def generic_constants(random: np.random.Generator, case: Case, mass: NDArray,
 
 
 def first_moment(case: Case, y: NDArray) -> NDArray:
-    """Of the deformed body, about the origin of the frame, in its axes."""
+    """First moment of the deformed body, about the origin of the frame, in its axes."""
     constants = constants_of(case)
     return constants["mc"] + constants["rigid_rows"][:case.dimension] @ y
 
@@ -59,7 +59,7 @@ def _centre(case: Case) -> NDArray:
 
 
 def _rotation(case: Case) -> NDArray:
-    """Of the rigid part."""
+    """Rotation of the rigid part."""
     angle = constants_of(case)["rigid_rows"][case.dimension:] @ local_coordinates(case)
     about = np.r_[np.zeros(3 - len(angle)), angle]
     return (frame_rotation(case) * Rotation.from_rotvec(about)).as_matrix()

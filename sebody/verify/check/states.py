@@ -54,7 +54,7 @@ class CheckRow(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether error or slope is within the limit."""
+        """Tell whether error or slope is within the limit."""
         return self.error <= self.limit if self.slope is None else self.slope > self.limit
 
 
@@ -81,7 +81,7 @@ class Case(NamedTuple):
 
     @property
     def planar(self) -> bool:
-        """Whether the motion is planar: angles among q in place of rotation matrices."""
+        """Tell whether the motion is planar: angles among q in place of rotation matrices."""
         return self.module.PLANAR
 
     @property

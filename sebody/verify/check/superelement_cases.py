@@ -26,7 +26,7 @@ from sebody.verify.check.states import (
 
 
 class Nodes(NamedTuple):
-    """What the generic states of a kernel have."""
+    """Nodes of the generic states of a kernel."""
 
     positions: int
     rotations: int

@@ -1,4 +1,4 @@
-"""What a case of others consists of, and the rule of its tolerances.
+"""Parts of a case of others, and the rule of its tolerances.
 
 The tolerance of a number is the least of a share of the source's own, by default a tenth, where its
 number is converged, and ten times the difference at twice the division: finer elements, more bodies
@@ -105,7 +105,7 @@ class Row(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether the difference is within the tolerance, and a number."""
+        """Tell whether the difference is within the tolerance, and a number."""
         return self.difference <= self.tolerance
 
 

@@ -31,7 +31,7 @@ def measure(division: int, whole: bool) -> Mapping[str, float]:
 
 
 def name(places: tuple[int, ...]) -> str:
-    """Of one mode or several equal ones."""
+    """Name of one mode or several equal ones."""
     return f"mode{'s' * (len(places) > 1)} {' to '.join(str(k + 1) for k in places)} [Hz]"
 
 

@@ -29,7 +29,7 @@ def run(division: int = 1) -> Result:
 
 
 def _relative(result: Result, quantity: str, angle: str) -> float:
-    """Of a body against the one it hangs on, at the end."""
+    """Motion of a body against the one it hangs on, at the end."""
     body, on = NODES[angle]
     value = result[f"{body}.{quantity}"][-1]
     return float(value - (result[f"{on}.{quantity}"][-1] if on else 0.0))

@@ -1,1 +1,1 @@
-"""What predicts errors, each from the recorded reference run alone; nothing here runs."""
+"""Predictions of errors, each from the recorded reference run alone; nothing here runs."""

@@ -1,4 +1,4 @@
-"""Whether a motion is smooth except for short times, where variable steps pay."""
+"""Motions that are smooth except for short times, where variable steps pay."""
 
 import numpy as np
 

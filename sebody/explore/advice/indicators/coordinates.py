@@ -24,6 +24,6 @@ def nodal(body: ReducedBody, coordinates: NDArray) -> tuple[NDArray, NDArray]:
 
 
 def compliance(body: ReducedBody) -> NDArray:
-    """Of the free boundary, for forces in balance: pseudo-inverse of its stiffness."""
+    """Compliance of the free boundary, for forces in balance: pseudo-inverse of its stiffness."""
     n = len(body.stiffness) - body.modes
     return np.linalg.pinv(body.stiffness[:n, :n], rcond=1e-12, hermitian=True)

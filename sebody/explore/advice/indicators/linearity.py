@@ -1,4 +1,4 @@
-"""What large local rotations take from linear stiffness."""
+"""Error of linear stiffness by large local rotations."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What internal modes that are left out would have done."""
+"""Error by internal modes that are left out."""
 
 from math import inf
 

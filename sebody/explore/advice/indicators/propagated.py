@@ -1,4 +1,4 @@
-"""What errors of the displacements in a part do to the quantities."""
+"""Effect of errors of the displacements in a part on the quantities."""
 
 from typing import NamedTuple
 

@@ -18,7 +18,7 @@ STATES = 400        # states that are looked at
 
 
 class Deformation(NamedTuple):
-    """Of some nodes against axes that follow them: the mean of their rotations, or best fit."""
+    """Deformation of nodes against axes that follow them: their mean rotation, or best fit."""
 
     shifts: NDArray     # (n, k, d) displacements in these axes; nan of nodes without a position
     turns: NDArray      # (n, k, 3 or 1) rotations against them; nan of nodes without one
@@ -77,7 +77,7 @@ class Recorded:
         return self._bodies[key]
 
     def accelerations(self, nodes: list[Node], body: ReducedBody) -> NDArray:
-        """Of the boundary of a body, in its axes at the start, (n, boundary coordinates)."""
+        """Accelerations of a body's boundary, in its axes at the start, (n, coordinates)."""
         axes = self.deformation(nodes).axes
         places = [np.einsum("nji,nj->ni", axes, self.read(nodes[k], "acceleration"))
                   for k in body.position_nodes]
@@ -96,7 +96,7 @@ class Recorded:
         return np.gradient(history, self.interval, axis=0)
 
     def deformation(self, nodes: list[Node]) -> Deformation:
-        """Of some nodes of a part."""
+        """Deformation of some nodes of a part."""
         key = tuple(node.name for node in nodes)
         if key not in self._found:
             self._found[key] = self._deformation(nodes)

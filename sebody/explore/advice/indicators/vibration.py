@@ -16,7 +16,7 @@ MOST = 2.0      # amplitudes: in antiphase
 
 
 class Vibration(NamedTuple):
-    """What vibrates in a model, as errors of the quantities that it would make.
+    """Vibrations in a model, as errors of the quantities that it would make.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def _vibration(recorded: Recorded) -> Vibration:
 
 
 def _of_part(recorded: Recorded, part: Part) -> Vibration:
-    """What vibrates in a part: what is left of the recorded deformation without its mean."""
+    """Vibrations in a part: what is left of the recorded deformation without its mean."""
     deformation = recorded.deformation(recorded.nodes(part))
     shifts, turns = (one - one.mean(axis=0) for one in deformation[:2])
     size = np.sqrt(sum((np.nan_to_num(one)**2).sum(axis=(1, 2)) for one in (shifts, turns)))
