@@ -103,7 +103,7 @@ def test_run_stops_and_goes_on(tmp_path, capsys):
 
 @pytest.mark.parametrize("arguments, message", [
     (["triple-beam"], "scene 'triple-beam' is unknown: did you mean 'spherical-beam' or "),
-    (["pendulum"], "scene 'pendulum' is unknown: there are ball-on-beam, blade, box, chain, "),
+    (["pendulum"], "scene 'pendulum' is unknown: there are ball-on-beam, blade, bolted-arm, box, "),
     (["Four_Bar"], "scene 'Four_Bar' is unknown: did you mean 'four-bar'?"),
     (["hinged-beam", "--set", "length=3"], "scene 'hinged-beam' has no parameter 'length': there "
      "are frame=converged_mean, inertia=None, modes=4, elements=20"),

@@ -7,9 +7,11 @@ from scipy.spatial.transform import Rotation
 from sebody import Model, simulate
 from sebody.analysis import equilibrium, vibrations
 from sebody.basics.errors import InputError
+from sebody.cli.entry import main
 from sebody.fem import circle
 from sebody.io import load_body, save_body
 from sebody.reduction import Accuracy, reduce_model
+from sebody.scenes.bolted_arm import build
 
 LEG, ARM = circle(0.03, 2.1e11, 0.3, 7850.0), circle(0.02, 2.1e11, 0.3, 7850.0)
 TURN = Rotation.from_rotvec((0.7, -0.4, 1.1)).as_matrix()
@@ -304,3 +306,25 @@ def test_friction_sticks_and_is_told_or_slides_and_is_refused():
         rubbing(model, nodes)
         model.torsion_spring(nodes["c"], to=nodes["d"], stiffness=2e3, rest=0.3, axis="z")
     assert "friction 'rub' at node" in (said := refused(wound)) and "slides in the state" in said
+
+
+def test_a_scene_from_its_bodies_and_as_one(tmp_path, capsys):
+    """A box frame and a bolted flange: the body of the command is that of the scene."""
+    path = tmp_path / "arm.npz"
+    assert main(["reduce", "bolted-arm", "--set", "reduced=False", "--interfaces", "root", "tip",
+                 "--modes", "10", "--output", str(path)]) == 0
+    said = capsys.readouterr().out
+    assert "revolute 'hinge', drive 'drive', what fixes root.position" in said
+    whole, one = (build(reduced=reduced) for reduced in (False, True))
+    states = [equilibrium(scene.model, 2) for scene in (whole, one)]
+    exact, found = (vibrations(state, 4).frequency for state in states)
+    assert found == pytest.approx(exact, rel=1e-4)
+    # bolts that pull plates together: a part of what they would without a flange that gives way
+    bolts = [np.linalg.norm(states[0][f"bolt {k}.force"][-1]) for k in range(4)]
+    assert all(5e3 < force < 1.5e4 for force in bolts)
+    paths = [simulate(scene.model, 1e-3, 0.4, start=state)["tip.position"]
+             for scene, state in zip((whole, one), states, strict=True)]
+    travel = np.ptp(paths[0][:, 2])
+    assert travel > 0.5 and np.abs(paths[1] - paths[0]).max() < 1e-3 * travel
+    assert load_body(path).total_mass == pytest.approx(
+        one.model.bodies["arm"].reduced.total_mass + 5.0)      # with the tool at its tip
