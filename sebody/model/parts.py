@@ -200,14 +200,10 @@ class Path:
     """A way along bodies, or along a curve on a node or the ground."""
 
     name: str
-    pieces: tuple[PathPiece, ...]
+    pieces: tuple[PathPiece, ...]   # with straight ones on the ground at ends that have some
     blend: float            # length over which one body hands over to the next [length]
-    ends: tuple[str, str]   # refuse or straight
-
-    @property
-    def length(self) -> float:
-        """Of the undeformed path, along chords between its knots [length]."""
-        return float(self.pieces[-1].offset + self.pieces[-1].ways[-1])
+    ends: tuple[str, str]   # refuse, straight or ground
+    length: float           # along chords between knots, without the ground at its ends [length]
 
     def __repr__(self) -> str:
         carriers = dict.fromkeys(piece.carrier.name for piece in self.pieces)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import accumulate
 
 import numpy as np
@@ -17,11 +18,12 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Node, Path, PathPiece, Superelement
+from sebody.model.path_tables import curve
 from sebody.reduction.recovery import Recovery
 
 ON_AXIS = 1e-6      # of the distance of two nodes: FE nodes so near to the line between are on it
 MEET = 1e-6         # of the length of a path: its pieces meet
-ENDS = "refuse", "straight"
+ENDS = "refuse", "straight", "ground"
 
 
 def path(model: Mechanism, name: str,
@@ -51,8 +53,9 @@ def path(model: Mechanism, name: str,
     blend : float
         Of several bodies: length over which one hands over to the next, with two continuous
         derivatives [length]; 0 where bodies are welded, at hinges the length that a rail bridges.
-    ends : {"refuse", "straight"} or two of these
-        What comes before and behind the path: a run stops there, or the path goes straight on.
+    ends : {"refuse", "straight", "ground"} or two of these
+        What comes before and behind the path: a run stops there, the path goes straight on with
+        its body, or on the ground, as before and behind a bridge. Ways before it are negative.
 
     Returns
     -------
@@ -87,8 +90,10 @@ def path(model: Mechanism, name: str,
         pieces = _pieces(model, what, carriers, nodes)
     starts = [0.0, *accumulate(float(piece.ways[-1]) for piece in pieces)]
     made = Path(name, tuple(piece._replace(offset=start) for piece, start in zip(
-        pieces, starts, strict=False)), inputs.number(blend, f"{what}: blend", least=0), both)
+        pieces, starts, strict=False)), inputs.number(blend, f"{what}: blend", least=0), both,
+        starts[-1])
     _check_joined(what, made)
+    made = _with_ground(model, what, made)
     model.paths[name] = made
     return made
 
@@ -114,10 +119,10 @@ def known_path(model: Mechanism, path: Path | str, what: str) -> Path:
 
 def _ends(what: str, ends: object) -> tuple[str, str]:
     both = (ends, ends) if isinstance(ends, str) else tuple(
-        inputs.items(ends, f"{what}: ends", "give one of refuse and straight, or two"))
+        inputs.items(ends, f"{what}: ends", "give one of refuse, straight and ground, or two"))
     if len(both) != 2 or not all(isinstance(one, str) and one in ENDS for one in both):
-        raise inputs.refusal(f"{what}: ends", ends, "give 'refuse' or 'straight', or two of these: "
-                             "of the beginning and of the end")
+        raise inputs.refusal(f"{what}: ends", ends, "give 'refuse', 'straight' or 'ground', or two "
+                             "of these: of the beginning and of the end")
     return both[0], both[1]
 
 
@@ -300,6 +305,27 @@ def _axis(model: Mechanism, what: str, body: Superelement, points: NDArray,
                          f"{ends[0].name!r} to {ends[1].name!r}, or its recovery was not kept: "
                          "give labels of FE nodes in order")
     return kept
+
+
+def _with_ground(model: Mechanism, what: str, path: Path) -> Path:
+    """The path with straight pieces on the ground at its ends, as long as itself."""
+    pieces = list(path.pieces)
+    if path.ends[0] == "ground":
+        of = curve(path, 0)
+        begin = of(0.0)
+        points = np.array([begin - path.length * _unit(of(0.0, 1)), begin])
+        pieces.insert(0, _curve(model, what, None, points)._replace(offset=-path.length))
+    if path.ends[1] == "ground":
+        of, last = curve(path, len(path.pieces) - 1), float(path.pieces[-1].ways[-1])
+        end = of(last)
+        points = np.array([end, end + path.length * _unit(of(last, 1))])
+        pieces.append(_curve(model, what, None, points)._replace(offset=path.length))
+    return replace(path, pieces=tuple(pieces))
+
+
+def _unit(vector: NDArray) -> NDArray:
+    unit: NDArray = vector / np.linalg.norm(vector)
+    return unit
 
 
 def _check_joined(what: str, path: Path) -> None:
