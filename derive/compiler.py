@@ -17,8 +17,8 @@ from sebody.derive.kernels.law_products import products_law
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
 from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
-from sebody.derive.kernels.path import PATHS, path_kernel
-from sebody.derive.kernels.path_form import path_form
+from sebody.derive.kernels.path import PATH_LOADS, PATHS, path_kernel, path_load_kernel
+from sebody.derive.kernels.path_form import path_form, path_load_form
 from sebody.derive.kernels.products import products_body_load, products_superelement
 from sebody.derive.kernels.superelement import superelement
 from sebody.derive.kernels.superelement_form import superelement_form
@@ -29,6 +29,7 @@ from sebody.derive.printing.numba.heads import (
     element_head,
     motion_head,
     path_head,
+    path_load_head,
     products_head,
     superelement_head,
 )
@@ -69,6 +70,7 @@ SUPERELEMENT = Stages(
 BODY_CONTACT = Stages(body_contact_kernel, _same, body_contact_form, body_contact_head,
                       element_name)
 BODY_PATH = Stages(path_kernel, _same, path_form, path_head, element_name)
+PATH_LOAD = Stages(path_load_kernel, _same, path_load_form, path_load_head, element_name)
 BODY_LOAD = Stages(body_load_kernel, _same, body_load_form, body_load_head, element_name)
 ELEMENT = Stages(lambda name: ELEMENTS[name](), elements.linearized, element_form, element_head,
                  element_name)
@@ -122,6 +124,8 @@ def stages_of(kernel: Variant | Products | str) -> Stages:
         return BODY_CONTACT
     if kernel in PATHS:
         return BODY_PATH
+    if kernel in PATH_LOADS:
+        return PATH_LOAD
     return MOTION if kernel in MOTIONS else BODY_LOAD if kernel in BODY_LOADS else ELEMENT
 
 

@@ -46,7 +46,7 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 32
+WORK_ROWS = 47
 OPERATIONS = {"residual": (505, 138, 128, 0),
               "column": (372, 285, 376, 0)}
 
@@ -78,10 +78,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     dh = at(work, 15*row)
     dg = at(work, 16*row)
     head = at(work, 17*row)
-    shapes = at(work, 20*row)
-    slopes = at(work, 23*row)
-    bends = at(work, 26*row)
-    changes = at(work, 29*row)
+    shapes = at(work, 23*row)
+    slopes = at(work, 29*row)
+    bends = at(work, 35*row)
+    changes = at(work, 41*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)

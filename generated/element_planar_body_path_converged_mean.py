@@ -44,7 +44,7 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 30
+WORK_ROWS = 45
 OPERATIONS = {"residual": (244, 38, 6, 0),
               "column": (134, 85, 20, 0)}
 
@@ -74,10 +74,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     dh = at(work, 13*row)
     dg = at(work, 14*row)
     head = at(work, 15*row)
-    shapes = at(work, 18*row)
-    slopes = at(work, 21*row)
-    bends = at(work, 24*row)
-    changes = at(work, 27*row)
+    shapes = at(work, 21*row)
+    slopes = at(work, 27*row)
+    bends = at(work, 33*row)
+    changes = at(work, 39*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)

@@ -125,5 +125,8 @@ PLANAR_FIT = _function("frame_search", "planar_fit", Gives.STATUS, count=WHOLE, 
 PATH_PLACE = _function("paths", "path_place", Gives.STATUS, path=READ, s=REAL, y=READ,
                        n=WHOLE, dimension=WHOLE, head=WRITE, shapes=WRITE, slopes=WRITE,
                        bends=WRITE)
+PATH_LOADS = _function("paths", "path_loads", path=READ, s=REAL, y=READ, n=WHOLE, dimension=WHOLE,
+                       head=WRITE, shapes=WRITE, slopes=SCRATCH, bends=WRITE, head_1=SCRATCH,
+                       shapes_1=SCRATCH, bends_1=SCRATCH)
 PATH_CHANGE = _function("paths", "path_change", path=READ, bends=READ, dy=READ, n=WHOLE,
                         dimension=WHOLE, changes=WRITE)

@@ -25,8 +25,8 @@ import sympy as sp
 
 from sebody.contract.layout import Part
 from sebody.derive.form.arrays import Array, Place, constant
-from sebody.derive.form.counts import i3, j3, k, n, row
-from sebody.derive.form.functions import PATH_CHANGE, PATH_PLACE
+from sebody.derive.form.counts import agreed, first, i3, j3, k, n, row
+from sebody.derive.form.functions import PATH_CHANGE, PATH_LOADS, PATH_PLACE
 from sebody.derive.form.spaces import AXES, Quantity, Space
 from sebody.derive.form.steps import Invert, Solve, Stage, Step, call, search
 from sebody.derive.formulas import arrays
@@ -48,9 +48,12 @@ from sebody.derive.symbolic.variation import along, check_same, differential
 
 PATH = Part("path", ("path",), "knots, rows of the recovery and followers, see kernels/paths.py")
 TABLE = constant(PATH)
-# what the runtime finds at a way; three rows of scratch memory have room for n vectors
-HEAD, SHAPES, SLOPES, BENDS, CHANGES = (
-    Array(name, (3, row)) for name in ("head", "shapes", "slopes", "bends", "changes"))
+# what the runtime finds at a way; rows of scratch memory have room for 4 numbers, and n of them,
+# or for n vectors
+HEAD, SHAPES, SLOPES, BENDS, CHANGES, HEAD_1, SHAPES_1, BENDS_1 = (
+    Array(name, (6, row)) for name in ("head", "shapes", "slopes", "bends", "changes", "head_1",
+                                       "shapes_1", "bends_1"))
+LOAD = Part("load", ("D",), "force of a load with the factor 1, in global axes [force]")
 # in `HEAD`: the arm and its derivatives by the way, the weight and its derivatives
 PLACES = {"rh": 0, "rs": 3, "rss": 6, "share": 9, "share_s": 10, "share_ss": 11}
 
@@ -189,21 +192,10 @@ def _moved(q: Quantities, frame: Frame, names: Names, gap: tuple[Stage, ...],
     chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
     ds = d(names.scalar("way")).symbols[0]
     slope, w, ws = names.vector("rs"), names.scalar("share"), names.scalar("share_s")
-    of_y = {home: d(one) for home, one in _coordinates(q).items()}
     dr, dslope = names.vector("drp"), names.vector("rsd_y")
-    steps: list[Step] = [
-        Stage("directions of positions in frame axes", "position",
-              sets=((q.dx, q.R0.symbols.T * q.dx.symbols),)),
-        origin_stage(q, q.dx0, q.dx), *frame.variation, chain.stage(local_displacement(q)),
-        Stage("variation of the elastic rotations, (17)", "rotation",
-              sets=((d(q.psi), elastic_rotation_variation(q)),)),
-        Stage("differential: internal modes", "mode", sets=((d(q.ym), d(q.qm).symbols),))]
-    for quantity in (q.psi, q.ym, q.beta, q.beta0):
-        chain.move(quantity)
+    steps, of_y = _varied(q, frame, chain, names, size)
     arm, bent = names.vector("dry"), names.vector("drsy")
     steps += [
-        *frame.differentials,
-        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.y.d, n, size, CHANGES),
         *names.summed(arm, SHAPES, of_y, "motion of the arm"),
         *names.summed(bent, SLOPES, of_y, "turning of the path"),
         Stage("motion of the arm, along the path included", "element",
@@ -221,6 +213,24 @@ def _moved(q: Quantities, frame: Frame, names: Names, gap: tuple[Stage, ...],
             chain.rules |= along(shape, change + turn * ds)
     steps += [chain.step(step) for step in gap]
     return tuple(steps), tuple(chain.step(step) for step in forces)
+
+
+def _varied(q: Quantities, frame: Frame, chain: Linearizer, names: Names, size: int
+            ) -> tuple[list[Step], dict[str, Quantity]]:
+    """Variations of the local coordinates and of the shapes through the followers."""
+    d = q.space.d
+    steps: list[Step] = [
+        Stage("directions of positions in frame axes", "position",
+              sets=((q.dx, q.R0.symbols.T * q.dx.symbols),)),
+        origin_stage(q, q.dx0, q.dx), *frame.variation, chain.stage(local_displacement(q)),
+        Stage("variation of the elastic rotations, (17)", "rotation",
+              sets=((d(q.psi), elastic_rotation_variation(q)),)),
+        Stage("differential: internal modes", "mode", sets=((d(q.ym), d(q.qm).symbols),)),
+        *frame.differentials,
+        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.y.d, n, size, CHANGES)]
+    for quantity in (q.psi, q.ym, q.beta, q.beta0):
+        chain.move(quantity)
+    return steps, {home: d(one) for home, one in _coordinates(q).items()}
 
 
 def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
@@ -272,3 +282,59 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
               Stage("second rate of the weighted gap", "element",
                     sets=((names.vector("phidd"), again),)))
     return rate, second
+
+
+class LoadSteps(NamedTuple):
+    """Of forces that move along a path, likewise."""
+
+    q: Quantities
+    residual: tuple[Step, ...]
+    prepared: tuple[Step, ...]
+    tangent: tuple[Step, ...]
+
+
+@cache
+def path_load(planar: bool, frame: FrameOption) -> LoadSteps:
+    """Derive the steps of given forces F c_k at given ways in a frame.
+
+    With the shares c_k of this body their virtual work is that of one force F on what moves by the
+    sums of c_k dx_k, so that a series of loads costs little more than one.
+    """
+    q = Quantities(Space(planar))
+    chosen, names, size = frame.derive(q), Names(q), 2 if planar else 3
+    way = q.space.quantity("amplitude", "scalar", "element", arrays.loads, Place(
+        3 * arrays.index[first + agreed("AT_PORT")])).symbols[0]
+    load = q.space.quantity("load", "vector", "element", constant(LOAD)).symbols
+    f, arm, share = names.vector("fp"), names.vector("rp"), names.scalar("share").symbols[0]
+    amplitude = names.scalar("along")
+    inverses = tuple(Invert(step) for step in chosen.velocity if isinstance(step, Solve))
+    residual = (
+        origin_stage(q, q.x0, q.x), *chosen.locate, local_displacement(q),
+        Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
+        Stage("way of the first load", "element", sets=((amplitude, sp.Matrix([way])),)),
+        call("loads on the path in the frame", PATH_LOADS, TABLE, amplitude.symbols[0], arrays.y,
+             n, size, HEAD, SHAPES, SLOPES, BENDS, HEAD_1, SHAPES_1, BENDS_1),
+        Stage("sum of the arms", "element", sets=((arm, names.vector("rh").symbols),)), *inverses)
+    on_frame = cross(arm.symbols, f.symbols)
+    _check_work(q, arm.symbols, f.symbols, on_frame)
+    conjugate = {"position": q.f, "rotation": q.m, "mode": q.fm}
+    forces = (
+        Stage("force in frame axes", "element", sets=((f, -(q.R0.symbols.T * load)),)),
+        *(Stage(f"forces conjugate to the local coordinates: {home}s", home,
+                sets=((of, _filled(of, [shape.dot(f.symbols)
+                                        for shape in names.rows(SHAPES, home)])),))
+          for home, of in conjugate.items()),
+        *forces_on_unknowns(q, chosen, share * f.symbols, Stage(
+            "moment of the force on the frame", "element", adds=((q.W, on_frame),),
+            continues=True)))
+    chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
+    steps, of_y = _varied(q, chosen, chain, names, size)
+    moved = names.vector("drp")
+    steps += names.summed(moved, SHAPES, of_y, "motion of the arms")
+    chain.rules |= along(arm.symbols, moved.symbols)
+    for home in of_y:
+        for shape, change in zip(*(names.rows(array, home) for array in (SHAPES, CHANGES)),
+                                 strict=True):
+            chain.rules |= along(shape, change)
+    return LoadSteps(q, (*residual, *forces), (), (
+        *steps, *(chain.step(step) for step in forces)))

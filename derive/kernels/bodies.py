@@ -8,7 +8,18 @@ from sebody.derive.form.arrays import Array, pointed
 from sebody.derive.form.counts import agreed
 from sebody.derive.form.functions import OPAQUE
 from sebody.derive.form.loops import size_of
-from sebody.derive.form.statements import For, If, Let, Point, Remark, Set, Statement, compared
+from sebody.derive.form.statements import (
+    Change,
+    For,
+    If,
+    Let,
+    Point,
+    Remark,
+    Set,
+    Statement,
+    Update,
+    compared,
+)
 from sebody.derive.form.whole import Applied, Number, Quotient, Whole, whole
 from sebody.derive.formulas import arrays
 from sebody.derive.kernels.arguments import ARGUMENTS
@@ -96,3 +107,12 @@ def _seeds(planar: bool, directions: tuple[Array, ...]) -> tuple[Statement, ...]
 def port() -> Whole:
     """Where the power of an element is among the energies."""
     return agreed("POWERS") + ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
+
+
+def power_of_forces() -> tuple[Statement, ...]:
+    """Power of the forces on the system."""
+    power, i = sp.Symbol("power"), counts.i
+    return (Set((power,), (sp.S.Zero,)),
+            For(i, Number(0), counts.n, (
+                Update(power, Change.SUBTRACT, arrays.g[i] * arrays.ve[i]),)),
+            Set((ARGUMENTS["energies"][port()],), (power,)))

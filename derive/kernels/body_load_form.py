@@ -1,20 +1,15 @@
 """The statements of the kernel of a load on a body, from its steps."""
 
-import sympy as sp
-
 from sebody.derive.form import counts
 from sebody.derive.form.counts import agreed
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.form.statements import (
-    Change,
     For,
     If,
     Let,
     Point,
     Return,
     Set,
-    Statement,
-    Update,
     compared,
 )
 from sebody.derive.form.whole import Number
@@ -28,7 +23,7 @@ from sebody.derive.kernels.bodies import (
     columns,
     gathered,
     pointers,
-    port,
+    power_of_forces,
     read_counts,
 )
 from sebody.derive.kernels.body_load import BodyLoad
@@ -53,17 +48,8 @@ def body_load_form(kernel: BodyLoad) -> Kernel:
     of_element = (
         *pointers(arrays.reference in used), *kernel.behind, *chain(kernel.constants, planar, {}),
         Point(arrays.g, ARGUMENTS["forces"].at(counts.element * n)), gathered(STATE[:2]),
-        *residual, If(compared(counts.task, "==", agreed("ENERGY")), _power()), matrix)
+        *residual, If(compared(counts.task, "==", agreed("ENERGY")), power_of_forces()), matrix)
     body = (Let((n,), (counts.width,)), *read_counts(kernel.layout), row, *memory.points,
             For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
     return Kernel(kernel.name, body, {}, memory.rows, memory.squares, operations(residual),
                   operations(tangent))
-
-
-def _power() -> tuple[Statement, ...]:
-    """Power of the forces on the system."""
-    power, i = sp.Symbol("power"), counts.i
-    return (Set((power,), (sp.S.Zero,)),
-            For(i, Number(0), counts.n, (
-                Update(power, Change.SUBTRACT, arrays.g[i] * arrays.ve[i]),)),
-            Set((ARGUMENTS["energies"][port()],), (power,)))

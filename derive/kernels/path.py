@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 from sebody.contract.layout import FRAME_CONSTANTS, Part
-from sebody.contract.names import path_kind
+from sebody.contract.names import path_kind, path_load_kind
 from sebody.derive.formulas.frames.frame import FrameOption
-from sebody.derive.formulas.path import PATH, Steps, body_path
+from sebody.derive.formulas.path import LOAD, PATH, LoadSteps, Steps, body_path, path_load
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
@@ -14,6 +14,9 @@ from sebody.derive.passes.lower import Names
 
 # of the frames that points inside bodies have: others turn with a body only nearly
 PATHS = {path_kind(name, planar): (name, planar) for name, planar in BODY_CONTACTS.values()}
+
+PATH_LOADS = {path_load_kind(name, planar): (name, planar)
+              for name, planar in BODY_CONTACTS.values()}
 
 
 class BodyPath(NamedTuple):
@@ -24,12 +27,13 @@ class BodyPath(NamedTuple):
     frame: str
     option: FrameOption
     names: Names
-    steps: Steps
+    steps: Steps | LoadSteps
 
     @property
     def declared(self) -> tuple[Part, ...]:
         """Constants beyond those of every frame."""
-        return (*self.option.traits.constants, PATH)
+        loads = (LOAD,) if self.name in PATH_LOADS else ()
+        return (*self.option.traits.constants, *loads, PATH)
 
     @property
     def constants(self) -> tuple[Part, ...]:
@@ -41,4 +45,11 @@ def path_kernel(name: str) -> BodyPath:
     """Derive the kernel of a name."""
     frame, planar = PATHS[name]
     steps = body_path(planar, FRAMES[frame])
+    return BodyPath(name, Layout(None, planar), frame, FRAMES[frame], opaque_names(steps.q), steps)
+
+
+def path_load_kernel(name: str) -> BodyPath:
+    """Derive the kernel of forces that move along a path, by its name."""
+    frame, planar = PATH_LOADS[name]
+    steps = path_load(planar, FRAMES[frame])
     return BodyPath(name, Layout(None, planar), frame, FRAMES[frame], opaque_names(steps.q), steps)

@@ -30,6 +30,7 @@ from sebody.derive.kernels.bodies import (
     STATE,
     columns,
     gathered,
+    power_of_forces,
     read_counts,
 )
 from sebody.derive.kernels.layouts import Layout
@@ -69,6 +70,29 @@ def path_form(kernel: BodyPath) -> Kernel:
             For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
     return Kernel(kernel.name, body, {}, memory.rows, memory.squares,
                   operations((*located, *forces)), operations(tangent))
+
+
+def path_load_form(kernel: BodyPath) -> Kernel:
+    """The kernel of forces that move along a path, whose unknowns are those of the body alone."""
+    steps, planar, n = kernel.steps, kernel.layout.planar, counts.n
+    lowering = Lowering(steps.q.space, kernel.names)
+    residual, prepared, tangent = map(lowering.statements, steps[1:])
+    used = uses((*residual, *prepared, *tangent)).arrays
+    memory = Memory.of((*STATE[:2], *used, DIRECTIONS[0]))
+    matrix = If(compared(counts.task, "==", agreed("TANGENT")), (
+        Set((FACTORS[0],), (ARGUMENTS["coefficients"][agreed("C_STIFFNESS")],)),
+        Point(MATRIX, ARGUMENTS["matrices"].at(counts.element * n * n)),
+        *prepared, columns(planar, DIRECTIONS[:1], tangent)))
+    of_element = (
+        *_pointers(), *chain(kernel.constants, planar, {}),
+        Point(arrays.g, ARGUMENTS["forces"].at(counts.element * n)), gathered(STATE[:2]),
+        *residual, If(compared(counts.task, "==", agreed("ENERGY")), power_of_forces()), matrix)
+    body = (Let((n,), (counts.width,)), *read_counts(kernel.layout),
+            Let((counts.row,), (counts.padded(largest(n, 9 * counts.ROTATIONS)),)),
+            *memory.points,
+            For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
+    return Kernel(kernel.name, body, {}, memory.rows, memory.squares, operations(residual),
+                  operations(tangent))
 
 
 def _counts(planar: bool) -> tuple[Let, ...]:

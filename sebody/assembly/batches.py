@@ -238,10 +238,13 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
 
 
 def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
-    """The row of constants of a point on a path: what places the frame, and the path."""
+    """The row of constants on a path: what places the frame, forces that move, and the path."""
     assert element.path is not None
-    carrier = element.path.here.carrier
-    path = path_numbers(element.path.path, element.path.piece)
+    carrier, own = element.path.here.carrier, dict(element.constants)
+    path = path_numbers(element.path.path, element.path.piece, "axles" in own)
+    if "axles" in own:
+        axles = np.asarray(own.pop("axles"))
+        path = np.concatenate([path, [len(axles)], axles.ravel()])
     if isinstance(carrier, Node):
         planar = len(carrier.point) == 2
         width = element.path.here.carrier_width
@@ -251,7 +254,7 @@ def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
     else:
         counts, values = counts_of(carrier), frame_constants(carrier)
     return constants_row(element.name, kernel, {**counts, "path": len(path)},
-                         values | {"path": path})
+                         values | own | {"path": path})
 
 
 def _matrices(numbering: Numbering, element: Element) -> list[int]:
@@ -277,7 +280,8 @@ def element_unknowns(numbering: Numbering, element: Element) -> list[int]:
     unknowns = [c for t in element.dof_blocks for c in coordinates(numbering, t)]
     places, modes = element.carried
     if modes:       # internal modes come behind the nodes of the body
-        at, first = element.firsts[places] - modes, numbering.modes[_carrier(element)]
+        at = sum(t.start.size for t in element.dof_blocks[:places])
+        first = numbering.modes[_carrier(element)]
         unknowns[at:at] = range(first, first + modes)
     if element.body is not None:
         first = numbering.modes[element.body.name]

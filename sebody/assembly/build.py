@@ -116,7 +116,7 @@ def work_size(model: Mechanism) -> int:
              for one in model.loads if one.point is not None]
     rows += [scratch_size(element_kernel(one.kind).WORK_ROWS, 0, one.width,
                           max(sum(place.kind == "rotation" for place in one.attachments), 1))
-             for one in model.constraints if one.path is not None]
+             for one in (*model.constraints, *model.loads) if one.path is not None]
     elements = max((sum(t.start.size for t in one.dof_blocks) for one in model.loads), default=0)
     laws = dependences(model, [one for one in model.loads if one.law is not None])
     rows += [_law_scratch(model, law, depends.numbers) for law, depends in laws.items()]

@@ -114,7 +114,8 @@ class _Order:
         self._awaited = awaited
         self._constraints: dict[DofBlock, list[Element]] = defaultdict(list)     # on each DOF block
         self._ways = {c: c.path.way for c in model.constraints
-                      if c.path is not None and c.shares is None and c.path.way.solved}
+                      if c.path is not None and c.path.way is not None and c.shares is None
+                      and c.path.way.solved}
         self._sharing = [c for c in model.constraints if c.shares is not None]
         for constraint in model.constraints:
             if constraint.shares is not None:

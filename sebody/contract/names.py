@@ -32,6 +32,11 @@ def path_kind(frame: str, planar: bool) -> str:
     return IN_PLANE * planar + f"body_path_{frame}"
 
 
+def path_load_kind(frame: str, planar: bool) -> str:
+    """Kind of forces that move along a path of a body with this frame."""
+    return IN_PLANE * planar + f"path_load_{frame}"
+
+
 def motion_name(frame: str, planar: bool) -> str:
     """The kernel of the motion of bodies with a frame: its place, local coordinates, rates."""
     return MOTION + IN_PLANE * planar + frame

@@ -193,3 +193,7 @@ def refuse_paths(model: Model) -> None:
         if joint.kind == PATH:
             raise InputError(f"joint {joint.name!r} is on a path, which is not exported: leave the "
                              "joint out, or simulate the model in Python")
+    for load in model.loads:
+        if load.path is not None:
+            raise InputError(f"force {load.name!r} moves along a path, which is not exported: "
+                             "leave the force out, or simulate the model in Python")

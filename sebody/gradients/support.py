@@ -38,6 +38,10 @@ def refuse_model(model: Model) -> None:
         if joint.kind == PATH:
             raise InputError(f"joint {joint.name!r} is on a path, which is not differentiated: use "
                              "an Ensemble with values on both sides")
+    for load in model.loads:
+        if load.path is not None:
+            raise InputError(f"force {load.name!r} moves along a path, which is not "
+                             "differentiated: use an Ensemble with values on both sides")
     for body in model.bodies.values():
         if FRAMES[body.frame].traits.incremental:
             exact = ", ".join(name for name, frame in FRAMES.items()

@@ -77,6 +77,39 @@ def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
 
 
 @compiled
+def path_loads(path, s, y, n, dimension, head, shapes, slopes, bends, head_1, shapes_1, bends_1):
+    """Sums over loads that move along a path: of `path_place`, times the share of each.
+
+    Behind the path stand the number of loads and, of each, how far it is behind the way s, and its
+    factor. A load that is not on the path has no share; the sum of shares is at `WEIGHT` of `head`,
+    the sum of arms at `ARM`. `slopes`, and what ends with 1, are scratch memory.
+    """
+    knots, followers = int(path[0]), int(path[1])
+    size = dimension * (1 + n + followers)
+    loads = HEAD + knots + 2 * size * knots + followers * n * n
+    for i in range(12):
+        head[i] = 0.0
+    for i in range(dimension * n):
+        shapes[i] = 0.0
+    for i in range(dimension * followers):
+        bends[i] = 0.0
+    for k in range(int(path[loads])):
+        way = s - path[loads + 1 + 2 * k]
+        if path_place(path, way, y, n, dimension, head_1, shapes_1, slopes, bends_1) != OK:
+            continue
+        share = path[loads + 2 + 2 * k] * head_1[WEIGHT]
+        if share == 0.0:
+            continue
+        head[WEIGHT] += share
+        for c in range(dimension):
+            head[ARM + c] += share * head_1[ARM + c]
+        for i in range(dimension * n):
+            shapes[i] += share * shapes_1[i]
+        for i in range(dimension * followers):
+            bends[i] += share * bends_1[i]
+
+
+@compiled
 def path_change(path, bends, dy, n, dimension, changes):
     """Changes of the shapes of `path_place` as coordinates change, through the followers."""
     followers = int(path[1])

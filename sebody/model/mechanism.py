@@ -90,7 +90,8 @@ class Mechanism:
 
     def ways(self) -> list[DofBlock]:
         """Ways of points on paths, which are unknowns of their own."""
-        return list(dict.fromkeys(c.path.way for c in self.constraints if c.path is not None))
+        return list(dict.fromkeys(c.path.way for c in self.constraints
+                                  if c.path is not None and c.path.way is not None))
 
     def size(self) -> float:
         """Characteristic length of the model, at least one unit of length."""

@@ -19,6 +19,7 @@ from sebody.model import (
     gears,
     joints,
     loads,
+    moving_loads,
     nodes,
     path_joints,
     paths,
@@ -103,6 +104,7 @@ class Model(Mechanism):
     beam_series = series.beam_series
     user_force = loads.user_force
     gravity = loads.gravity
+    moving_force = moving_loads.moving_force
 
     actuator = actuators.actuator
     sensor = sensors.sensor

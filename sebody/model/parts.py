@@ -212,11 +212,14 @@ class Path:
 
 
 class OnPath(NamedTuple):
-    """What makes an element of a point on a path: one for each piece, which share equations."""
+    """What makes an element of a point on a path, or of forces: one for each piece.
+
+    Elements of a point share its equations.
+    """
 
     path: Path
     piece: int
-    way: DofBlock           # hidden: how far along the path the point is
+    way: DofBlock | None    # hidden: how far along the path the point is; none of forces
 
     @property
     def here(self) -> PathPiece:
@@ -281,7 +284,8 @@ class Element:
     @property
     def width(self) -> int:
         """Unknowns of an element whose first ones are those of a body, with its multipliers."""
-        return self.firsts[-1] + self.dof_blocks[-1].start.size + self.equations.multipliers
+        own = sum(dof_block.start.size for dof_block in self.dof_blocks) + self.carried[1]
+        return own + self.equations.multipliers
 
     @property
     def equations(self) -> "Element":

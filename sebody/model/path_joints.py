@@ -145,8 +145,9 @@ def way_of(joint: Joint, what: str) -> DofBlock:
     if joint.kind != PATH:
         raise InputError(f"{what}: joint {joint.name!r} is a {joint.kind}, which has no way along "
                          "a path: give a joint of path_joint")
-    assert joint.constraints[0].path is not None
-    return joint.constraints[0].path.way
+    path = joint.constraints[0].path
+    assert path is not None and path.way is not None
+    return path.way
 
 
 def _start(model: Mechanism, what: str, a: Node, path: Path, start: float | None) -> float:

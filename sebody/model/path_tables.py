@@ -26,15 +26,20 @@ class Rows(NamedTuple):
     followers: NDArray      # matrices Q_b, (m, n, n)
 
 
-def path_numbers(path: Path, k: int) -> NDArray:
-    """The row of constants of piece k of a path, see `sebody.kernels.paths`."""
+def path_numbers(path: Path, k: int, forces: bool = False) -> NDArray:
+    """The row of constants of piece k of a path, see `sebody.kernels.paths`.
+
+    Of `forces`: these act from end to end of a path alone, unless it goes on on the ground.
+    """
     piece, rows = path.pieces[k], rows_of(path.pieces[k])
     half, length = path.blend / 2, piece.ways[-1]
     first = (-half, half) if k else (-NO_EDGE, -NO_EDGE)
     last = ((length - half, length + half) if k < len(path.pieces) - 1 else
             (NO_EDGE, NO_EDGE))
-    low, high = (-MARGIN * path.length if path.ends[0] == "refuse" else -NO_EDGE,
-                 (1 + MARGIN) * path.length if path.ends[1] == "refuse" else NO_EDGE)
+    margin = 0.0 if forces else MARGIN * path.length
+    held = ("refuse", "straight") if forces else ("refuse",)
+    low = -margin if path.ends[0] in held else -NO_EDGE
+    high = path.length + margin if path.ends[1] in held else NO_EDGE
     both = np.stack([rows.values, rows.slopes], axis=1)
     return np.concatenate([[len(piece.ways), len(rows.followers), piece.offset], first, last,
                            [low, high], piece.ways, both.ravel(), rows.followers.ravel()])

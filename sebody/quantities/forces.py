@@ -31,7 +31,7 @@ def drives(of: Parts) -> dict[str, Joint | Motion]:
 def loads(of: Parts) -> dict[str, Element]:
     """Loads, springs and dampers on nodes."""
     return {load.name: load for load in of.model.loads
-            if load.attachments and load.law is None}
+            if load.attachments and load.law is None and load.path is None}
 
 
 def of_body(of: Numbers, name: str) -> list[Number]:

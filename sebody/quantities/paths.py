@@ -15,7 +15,9 @@ def sliding(of: Parts) -> dict[str, Joint]:
 
 def way(of: Numbers, name: str, part: str) -> Number:
     """How far along its path a node is, from its beginning; or the rate of this."""
-    return of.coordinates(part, _on(sliding(of)[name]).way)[0]
+    own = _on(sliding(of)[name]).way
+    assert own is not None
+    return of.coordinates(part, own)[0]
 
 
 def thrust(of: Numbers, name: str) -> Number:

@@ -12,6 +12,7 @@ from malformed.cases import (
     have,
     nodes,
     not_negative,
+    vectors,
 )
 from malformed.model_cases import (
     BODY,
@@ -19,6 +20,7 @@ from malformed.model_cases import (
     OTHER,
     TABLE,
     foreign,
+    histories,
     lacks_place,
     lacks_turn,
     names,
@@ -125,6 +127,21 @@ CASES = {
         "node": [("a", "path joint at 'a': the node is one of superelement 'beam'"),
                  ("d", "path joint at 'd': the node is")],
         "path": [("slot", "path joint at 'c': the node carries path 'slot' itself")]}),
+    "moving_force": Right(Model.moving_force, {
+        "path": "rail", "force": (0.0, 0.0, 1.0), "way": TABLE, "spacing": (0.0, 0.5),
+        "factors": (1.0, 2.0)}, {
+            "path": [*are("moving force: path", 3, None, ["rail"]),
+                     ("far", "path 'far' is unknown"),
+                     ("slot", "moving force along 'slot': the path is a curve on 'c'"),
+                     (_foreign_path(), "path 'curve' is of another model")],
+            "force": vectors("moving force along 'rail': force", 3),
+            "way": histories()[:6],
+            "spacing": [*are("moving force along 'rail': spacing", "abc", None, 3, [], [NAN],
+                             [[0.0, 1.0]], ["0", "1"]),
+                        ([0.0], "moving force along 'rail': spacing has 1 forces and factors 2")],
+            "factors": [*are("moving force along 'rail': factors", "abc", 3, [], [INF, 1.0]),
+                        ([1.0], "spacing has 2 forces and factors 1: give one number for each")],
+            "name": names("force along rail")}),
     "drive_way": Right(Model.drive_way, {"joint": "runs", "motion": TABLE}, {
         "joint": [*are("drive of the way", None, 3, ["runs"], also=": give a joint"),
                   ("far", "element 'far' is unknown"),

@@ -331,6 +331,10 @@ def test_refused_by_name_and_ensembles_one_by_one():
     model = slide()
     with pytest.raises(InputError, match="joint 'runs' is on a path, which is not differentiated"):
         gradient(model, 1e-2, 0.1, {"x": final("bead.position.x")}, ["bead.mass"])
+    for refuse in (lambda: gradient(loaded(), 1e-2, 0.1, {"x": final("b.rotation")}, ["beam.mass"]),
+                   lambda: refuse_paths(loaded())):
+        with pytest.raises(InputError, match="force 'axles' moves along a path, which is not"):
+            refuse()
     with pytest.raises(InputError, match="joint 'runs' is on a path, which is not exported"):
         refuse_paths(model)
     found = Ensemble(model, 1e-2).run({"bead.mass": np.array([1.0, 2.0])}, 0.2,
@@ -348,3 +352,86 @@ def test_measured_and_in_summaries():
     assert result["tachometer.value"][-1] == pytest.approx(0.8 * G * 0.3, rel=1e-6)
     assert result["scales.value"][-1] == pytest.approx(2.0 * G * 0.6, rel=1e-6)
     assert "line  the ground       1      2  refuse" in model.summary()
+
+
+def loaded(bodies=1, flat=True, turned=None, **force):
+    """A force without mass, or several, on the beam of `bridge`."""
+    model, turned = Model(planar=flat), np.eye(3) if turned is None else turned
+    ends = [model.node(name, x * turned[:2, 0] if flat else x * turned[:, 0] + SHIFT)
+            for name, x in (("a", 0.0), ("b", 1.0))]
+    up = {} if flat else {"up": turned[:, 1]}
+    model.beam("beam", ends, thin(), elements=24, bodies=bodies, modes=10 if flat else 20,
+               stiffening=False, **up)
+    if flat:
+        for end in ends:
+            model.fix(end, "position")
+    else:
+        model.revolute("a", turned[:, 2])
+        model.universal("b", turned[:, 2], turned[:, 0])
+    model.path("deck", on="beam")
+    down = -MASS * SMALL * turned[:, 1]
+    model.moving_force("deck", down[:2] if flat else down, lambda t: 0.5 * np.pi * t,
+                       name="axles", **force)
+    return model
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_force_moves_along_a_bridge():
+    """Mid-span by the series of a moving force; its work is the energy of the beam."""
+    times = np.array([0.25, 0.5, 0.75, 0.95]) / SPEED
+    k = np.arange(1, 40) * np.pi
+    exact = [2 * MASS * np.sum(np.sin(k / 2) / (k**4 - (SPEED * k)**2) * (
+        np.sin(SPEED * k * t) - SPEED / k * np.sin(k * k * t))) for t in times]
+    for bodies in (1, 2):
+        result = simulate(loaded(bodies), times[-1] / 760, times[-1])
+        place = "beam.node12" if bodies == 1 else "beam 1"
+        middle = -np.interp(times, result.t, result[f"{place}.position"][:, 1]) / SMALL
+        assert middle == pytest.approx(exact, abs=4e-6)
+        work = sum(result[f"{name}.work"][-1] for name in result.numbering.port_names)
+        energy = (result["energy.kinetic"] + result["energy.strain"])[-1]
+        assert work == pytest.approx(energy, rel=1e-5)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_series_of_axles_is_a_sum():
+    """In space and in general position as in a plane; what has left the path does not act."""
+    h, end = 0.5e-3, 0.8
+    one = simulate(loaded(), h, end)["beam.node12.position"][:, 1]
+    later = np.interp(one_t := np.arange(len(one)) * h - 0.2 / SPEED, np.arange(len(one)) * h, one)
+    later[one_t < 0] = 0.0
+    both = simulate(loaded(spacing=(0.0, 0.2), factors=(1.0, 0.5)), h, end)
+    found = both["beam.node12.position"][:, 1]
+    size = np.abs(found).max()
+    assert found == pytest.approx(one + 0.5 * later, abs=2e-3 * size)
+    spatial = simulate(loaded(flat=False, turned=TURN, spacing=(0.0, 0.2), factors=(1.0, 0.5)),
+                       h, end)
+    place = (spatial["beam.node12.position"] - SHIFT) @ TURN[:, 1]
+    assert place == pytest.approx(found, abs=2e-3 * size)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("blend", [0.0, 0.05])
+def test_a_mass_comes_from_the_ground_and_crosses_two_spans(blend):
+    """Two separate beams; before and behind them it is on the ground, where nothing bends."""
+    model = Model(planar=True)
+    for k in range(2):
+        ends = [model.node(f"{name} {k}", (k + x, 0.0)) for name, x in (("a", 0.0), ("b", 1.0))]
+        model.beam(f"span {k}", ends, thin(), elements=24, bodies=1, modes=8, stiffening=False)
+        for end in ends:
+            model.fix(end, "position")
+    car = model.node("car", (-0.2, 0.0), "translation")
+    model.point_mass("mass", car, MASS)
+    model.force(car, (0.0, -1.0), MASS * SMALL)
+    model.path("deck", on=["span 0", "span 1"], blend=blend, ends="ground")
+    model.path_joint(car, "deck", name="runs")
+    model.drive_way("runs", (lambda t: 0.5 * np.pi * t, lambda t: 0.5 * np.pi, lambda t: 0.0))
+    result = simulate(model, 1e-3, 2.5 / SPEED)
+    way, place = result["runs.way"], -result["car.position"][:, 1] / SMALL
+    assert way[0] == pytest.approx(-0.2)
+    outside = (way < -blend) | (way > 2 + blend)
+    assert outside.sum() > 100
+    assert np.abs(place[outside]).max() < 1e-6
+    exact = deflections(np.array([0.25, 0.5, 0.75]) / SPEED)
+    for span in range(2):       # the second one rests when the mass comes
+        under = np.interp(np.array([0.25, 0.5, 0.75]) + span, way, place)
+        assert under == pytest.approx(exact, abs=(3e-4 if blend == 0 else 5e-3) * 0.0196)

@@ -108,6 +108,21 @@ def path_head(given: BodyPath, kernel: Kernel) -> Head:
         ("FRAME_CONSTANTS",), (PART,))
 
 
+def path_load_head(given: BodyPath, kernel: Kernel) -> Head:
+    """Of forces that move along a path: any layout, one frame."""
+    return Head(
+        "Element kernel: forces that move along a path of a body",
+        (f"Any number of positions and rotations of {SPACES[given.layout.planar]}; any number of "
+         "internal modes.", f"Frame: {given.option.traits.summary}."),
+        (f'FRAME = "{given.frame}"', *counts(given.layout.planar, (None, None)),
+         "MOVING = True        # along a path",
+         f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}", "MULTIPLIERS = 0", "READS = 0",
+         "MEMORY = ()",
+         *OF_LOADS,
+         f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
+        ("FRAME_CONSTANTS",), (PART,))
+
+
 def _nodes(layout: Layout) -> str:
     """Its counts in words."""
     if layout.nodes is None:

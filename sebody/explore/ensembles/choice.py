@@ -26,8 +26,8 @@ FACTS = (       # each lets runs be made one by one alone
     Fact("elements that keep numbers, as contacts and friction, among rigid bodies alone",
          lambda one: not one.model.bodies and any(
              element.law is None for element in one.numbering.memories)),
-    Fact("joints on paths, whose places are looked up in one run at a time",
-         lambda one: bool(one.model.ways())),
+    Fact("joints and forces on paths, whose places are looked up in one run at a time",
+         lambda one: any(e.path is not None for e in (*one.model.constraints, *one.model.loads))),
     Fact("equal bodies, of which each run evaluates eight at a time",
          lambda one: bool(evaluated_together(one.model))),
 )

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from sebody.basics.errors import InputError
-from sebody.contract.names import path_kind
+from sebody.contract.names import path_kind, path_load_kind
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Path, Superelement
@@ -37,6 +37,7 @@ def put_on(model: Mechanism, old: Superelement, made: Superelement) -> None:
         The FE nodes of the new body are unknown or others.
     """
     changed: dict[Path, Path] = {}
+    moved: dict[Element, Element] = {}
     for path in paths_on(model, old):
         before, after = old.reduced.recovery, made.reduced.recovery
         if before is None or after is None or before.coordinates.shape != after.coordinates.shape:
@@ -49,6 +50,14 @@ def put_on(model: Mechanism, old: Superelement, made: Superelement) -> None:
         changed[path] = model.paths[path.name] = replace(path, pieces=tuple(
             piece._replace(carrier=made) if piece.carrier is old else piece
             for piece in path.pieces))
+    for load in model.loads:
+        if load.path is not None and load.path.path in changed:
+            on = load.path._replace(path=changed[load.path.path])
+            own = on.here.carrier is made
+            moved[load] = replace(load, path=on, attachments=on.here.attachments,
+                                  kind=path_load_kind(FRAMES[made.frame].kernel, model.planar)
+                                  if own else load.kind)
+    model.loads = [moved.get(load, load) for load in model.loads]
     for joint in model.joints:
         known: dict[Element, Element] = {}
         for one in joint.constraints:

@@ -18,7 +18,7 @@ from sebody.verify.check.elements import check_element
 from sebody.verify.check.law_products import check_law_products
 from sebody.verify.check.laws import follows
 from sebody.verify.check.motions import check_motion
-from sebody.verify.check.paths import check_body_path
+from sebody.verify.check.paths import check_body_path, check_path_load
 from sebody.verify.check.products import check_products
 from sebody.verify.check.quantities import QUANTITIES, check_quantities
 from sebody.verify.check.report import summary, table, verdict
@@ -50,6 +50,7 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
                  check_motion if name.startswith(MOTION) else
                  check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_path if hasattr(module, "WAY") else
+                 check_path_load if hasattr(module, "MOVING") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)
     if not asked or QUANTITIES in asked:

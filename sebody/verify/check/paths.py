@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import AT_FRAME, FRAME_CONSTANTS, RESIDUAL
+from sebody.contract.layout import AT_FRAME, ENERGY, FRAME_CONSTANTS, POWERS, RESIDUAL
 from sebody.kernels.paths import HEAD
 from sebody.verify.check.definitions import frame_rotation, local_coordinates
 from sebody.verify.check.elements import (
@@ -28,6 +28,7 @@ from sebody.verify.check.states import (
     constants_of,
     difference,
     evaluate,
+    gradient,
     index_row,
     with_constants,
 )
@@ -44,11 +45,7 @@ def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
     """A generic state of a body and, behind it, of a point, the way, and multipliers."""
     body, values, random = placed_case(module, seed, nodes=nodes)
     d, n = body.dimension, body.n
-    size, behind = d * (1 + n + FOLLOWERS), 2 * d + 1
-    rows = 0.5 * random.normal(size=(len(KNOTS), 2, size))
-    Q = 0.3 * random.normal(size=(FOLLOWERS, n, n))
-    path = np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -99.0, 99.0, KNOTS,
-                 rows.ravel(), (Q + Q.transpose(0, 2, 1)).ravel()]
+    path, behind = _numbers(random, n, d, seed), 2 * d + 1
     q, v, a = (np.r_[own, random.normal(size=behind)] for own in (body.q, body.v, body.a))
     q[n + d] = WAY
     index = np.r_[index_row(len(q), nodes.positions, nodes.rotations), 0]
@@ -57,6 +54,14 @@ def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
                 np.r_[body.reference, kept], np.r_[body.frames, kept], path=len(path))
     return with_constants(case, {part.name: values.get(part.name, path)
                                  for part in module.CONSTANTS})
+
+
+def _numbers(random: np.random.Generator, n: int, d: int, seed: int) -> NDArray:
+    """The numbers of a generic path."""
+    rows = 0.5 * random.normal(size=(len(KNOTS), 2, d * (1 + n + FOLLOWERS)))
+    Q = 0.3 * random.normal(size=(FOLLOWERS, n, n))
+    return np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -20.0, 99.0, KNOTS,
+                 rows.ravel(), (Q + Q.transpose(0, 2, 1)).ravel()]
 
 
 def _body(case: Case) -> Case:
@@ -71,15 +76,19 @@ def _body(case: Case) -> Case:
     return with_constants(made, {part.name: constants[part.name] for part in parts})
 
 
-def _place(case: Case) -> NDArray:
-    """The place on the path, by splines and rotations of SciPy."""
+def _place(case: Case, way: float | None = None) -> NDArray:
+    """The place on the path at a way, by default that of the point.
+
+    By splines and rotations of SciPy.
+    """
     body, constants, d, n = _body(case), constants_of(case), case.dimension, case.own
     path = constants["path"]
     rows = path[HEAD + len(KNOTS):][:2 * len(KNOTS) * d * (1 + n + FOLLOWERS)].reshape(
         len(KNOTS), 2, 1 + n + FOLLOWERS, d)
-    here = CubicHermiteSpline(KNOTS, rows[:, 0], rows[:, 1])(case.q[n + d] - OFFSET)
+    way = case.q[n + d] if way is None else way
+    here = CubicHermiteSpline(KNOTS, rows[:, 0], rows[:, 1])(way - OFFSET)
     y = local_coordinates(body)
-    Q = path[len(path) - FOLLOWERS * n * n:].reshape(FOLLOWERS, n, n)
+    Q = path[HEAD + len(KNOTS) + rows.size:][:FOLLOWERS * n * n].reshape(FOLLOWERS, n, n)
     z = np.r_[1.0, y, np.einsum("i,bij,j->b", y, Q, y) / 2]
     origin = constants["alphas"] @ body.q[:body.first_rotation].reshape(-1, d)
     return origin + frame_rotation(body).as_matrix()[:d, :d] @ (z @ here)
@@ -123,3 +132,52 @@ def check_body_path(name: str, module: ModuleType) -> list[CheckRow]:
                      LIMIT, nodes)
             for nodes in nodes_of(module)[:KINDS] for seed in range(STATES)
             for criterion, measure in CRITERIA.items()]
+
+
+AXLES = np.array([[0.0, 1.0], [1.3, 0.7], [30.0, 5.0]])     # the last one is not on the path
+
+
+def path_load_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
+    """A generic state of a body, and three loads on its path."""
+    case, values, random = placed_case(module, seed, nodes=nodes)
+    path = np.r_[_numbers(random, case.n, case.dimension, seed), len(AXLES), AXLES.ravel()]
+    index = np.r_[case.index, 0]
+    case = case._replace(index=index, path=len(path), loads=np.array([WAY, 0.4, -0.3]))
+    values |= {"path": path, "load": random.normal(size=case.dimension)}
+    return with_constants(case, {part.name: values[part.name] for part in module.CONSTANTS})
+
+
+def _potential(case: Case) -> float:
+    """Minus the work of the forces, by splines and rotations of SciPy."""
+    constants, found = constants_of(case), 0.0
+    edges = constants["path"][3:7]
+    for behind, factor in AXLES[:2]:
+        way = case.loads[0] - behind
+        u, v = (np.clip((way - OFFSET - edges[k]) / max(edges[k + 1] - edges[k], 1e-9), 0, 1)
+                for k in (0, 2))
+        rise, fall = (x**3 * (10 - 15 * x + 6 * x * x) for x in (u, v))
+        found -= factor * rise * (1 - fall) * constants["load"] @ _place(case, way)
+    return found
+
+
+def potential_force(case: Case) -> float:
+    """Forces against differences of the potential."""
+    exact = gradient(case, _potential, 0.005)
+    return difference(evaluate(case, RESIDUAL)[0], exact)
+
+
+def power(case: Case) -> float:
+    """Power of the forces against these times the velocities."""
+    exact = -evaluate(case, RESIDUAL)[0] @ case.v
+    return abs(evaluate(case, ENERGY)[2][POWERS] / exact - 1)
+
+
+LOAD_CRITERIA = {"force = dV/dq": potential_force, "power": power, "tangent": element_tangent}
+
+
+def check_path_load(name: str, module: ModuleType) -> list[CheckRow]:
+    """All criteria of forces that move along a path."""
+    return [CheckRow(name, criterion, seed, measure(path_load_case(module, seed, nodes)), None,
+                     LIMIT, nodes)
+            for nodes in nodes_of(module)[:KINDS] for seed in range(STATES)
+            for criterion, measure in LOAD_CRITERIA.items()]

@@ -219,7 +219,7 @@ def evaluate(case: Case, task: int, coefficients: Iterable[float] = (0, 0, 0, 1,
 
 def _in_global_axes(J: NDArray, frame: NDArray, case: Case) -> NDArray:
     """Matrix with positions rotated to global axes, from those of the frame of a superelement."""
-    if case.own < case.n or not hasattr(case.module, "FRAME"):      # no superelement
+    if case.own < case.n or hasattr(case.module, "MOVING") or not hasattr(case.module, "FRAME"):
         return J
     turn, d = np.eye(len(J)), case.dimension
     R0 = frame.reshape(3, 3)[:d, :d]
