@@ -50,7 +50,7 @@ MAY_IMPORT = {
     "catalogue": {*COMPILED, "scenes"},
     "verify": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "quantities",
                "results", "pictures", "runs", "small_motion", "explore", "gradients", "sebody",
-               "analysis", "io", "scenes", "catalogue"},
+               "analysis", "io", "names of reduction", "scenes", "catalogue"},
     "export": {*COMPILED, "engine", "model", "assembly", "quantities", "results", "parameters",
                "runs"},
     "cli": {"contract", "kernels", "reduction", "io", "sebody", "results", "pictures", "runs",

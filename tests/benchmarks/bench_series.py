@@ -8,18 +8,13 @@ whole runs, in turns, the best of all.
 
 import argparse
 import json
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-
-from oc4_jacket import NAMES, body, jacket, loads  # noqa: E402
-
-from sebody import Model, simulate  # noqa: E402
-from sebody.reduction import ReducedBody  # noqa: E402
+from sebody import Model, simulate
+from sebody.reduction import ReducedBody
+from sebody.verify.outside.jacket import NAMES, body, jacket, loads
 
 END, STEPS = 25.0, (0.05, 0.01)
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
-from oc4_jacket import BASE, INTERFACE, MODES, NAMES, body, loads, matrices
 
 from sebody import InputError, Model, Simulation
 from sebody.analysis import equilibrium, modes, vibrations
@@ -14,6 +13,7 @@ from sebody.io.importing import Wanted, imported, tied
 from sebody.io.interfaces import parsed
 from sebody.io.reading import Reading
 from sebody.reduction import craig_bampton, grounded_body, grounded_from_fe
+from sebody.verify.outside.jacket import BASE, INTERFACE, MODES, NAMES, body, loads, matrices
 
 WAVE = "wave elevation"
 

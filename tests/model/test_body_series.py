@@ -5,7 +5,6 @@ import pytest
 from helpers import order
 from lane_models import single
 from numpy.testing import assert_allclose
-from oc4_jacket import MODES, jacket, loads, matrices
 from scipy.signal import lsim
 from scipy.spatial.transform import Rotation
 
@@ -27,6 +26,7 @@ from sebody.io import LoadSeries
 from sebody.model.histories import spline_of
 from sebody.model.variants import keep_modes, planar, rigid
 from sebody.reduction import craig_bampton
+from sebody.verify.outside.jacket import MODES, jacket, loads, matrices
 
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
 SECTION = Section(4e-4, 3e-8, 1e-8, 2e-8, 7e10, 0.3, 2700.0)

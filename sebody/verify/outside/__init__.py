@@ -17,15 +17,17 @@ __all__ = ["CASES", "Case", "Row", "as_dict", "check_names", "load", "measure", 
 CASES = (
     # mechanisms of rigid bodies
     "simple-pendulum", "n-four-bar", "squeezer", "bricard", "flyball-governor",
-    "spatial-slider-crank",
+    "spatial-slider-crank", "heavy-top",
     # beams at rest
     "composite-beam", "twisted-beam", "curved-beam", "curved-superelements", "two-beam-cantilever",
-    "turning-self-weight", "pin-beam",
+    "turning-self-weight", "pin-beam", "princeton-beam", "roll-up",
     # vibrations and rotation
     "double-cross", "off-centre-masses", "deep-beam", "string-in-tension", "l-frame",
-    "rotating-cantilever", "rotating-rod",
+    "rotating-cantilever", "rotating-rod", "rotating-blade", "spinning-ring", "rotor-in-bearings",
+    "whirling-shaft", "jacket",
     # motion of flexible bodies
-    "composite-beam-dynamics",
+    "composite-beam-dynamics", "slewing-beam", "misaligned-four-bar", "lateral-buckling",
+    "rotating-shaft", "spin-up-rounded",
 )
 
 

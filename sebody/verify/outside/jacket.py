@@ -5,11 +5,16 @@ From ``glue-codes/openfast/5MW_OC4Jckt_ExtPtfm/ExtPtfm_SE.dat`` of OpenFAST/r-te
 entries below 1e-8 are zero. The damping of the file is ``0.10671 M + 6.1e-4 K`` to its digits.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody import Model
+from sebody.analysis import equilibrium, modes, vibrations
 from sebody.io import LoadSeries
-from sebody.reduction import grounded_body
+from sebody.reduction import ReducedBody, grounded_body
+from sebody.verify.outside.case import Case, Quantity
 
 MODES = 25
 NAMES = ["x", "y", "z", "rx", "ry", "rz", *(f"mode {k}" for k in range(MODES))]
@@ -35,7 +40,7 @@ COUPLING = {
     5: {9: 0.563008746, 10: -2553.42290, 23: -0.198408716, 27: -1149.81199}}
 
 
-def matrices():
+def matrices() -> tuple[NDArray, NDArray, NDArray]:
     """Mass, stiffness and damping, (31, 31)."""
     M, K = np.zeros((2, 31, 31))
     for i, row in COUPLING.items():
@@ -52,14 +57,14 @@ def matrices():
     return M, K, alpha * M + (1.54140226e5 - alpha * M[0, 0]) / K[0, 0] * K
 
 
-def body(damped=True):
+def body(damped: bool = True) -> ReducedBody:
     """The jacket as a body that is held to the ground."""
     M, K, C = matrices()
     return grounded_body(K, M, [INTERFACE], ("full",), MODES, C if damped else None, BASE,
                          units=UNITS)
 
 
-def jacket(damped=True, top=False):
+def jacket(damped: bool = True, top: bool = False) -> Model:
     """A model of the jacket, perhaps with 350 t on a rigid link 70 m above its interface."""
     model = Model()
     node = model.node("interface", INTERFACE)
@@ -69,7 +74,8 @@ def jacket(damped=True, top=False):
     return model
 
 
-def loads(step=0.05, end=25.0, size=1.0, smooth=False):
+def loads(step: float = 0.05, end: float = 25.0, size: float = 1.0, smooth: bool = False
+          ) -> LoadSeries:
     """A series of loads on all coordinates, from rest: filtered noise, or a few harmonics."""
     random, t = np.random.default_rng(1), np.arange(0.0, end + step / 2, step)
     scale = size * np.r_[[1e5] * 3, [1e6] * 3, [50.0] * MODES]
@@ -84,3 +90,43 @@ def loads(step=0.05, end=25.0, size=1.0, smooth=False):
         values = scale * np.array([np.convolve(one, window, "same") for one in noise.T]).T[10:-10]
         values[0] = 0.0
     return LoadSeries(t, values, NAMES)
+
+
+INTERFACE_CLAMPED = 4.577114, 4.577291, 5.225177, 5.768653, 6.001655, 6.453244
+INTERFACE_FREE = 1.067671, 1.067727, 3.713898, 4.150379, 4.150553, 5.225177, 6.001655, 6.366261
+WITH_MASS = 0.518263, 0.518268, 2.101890, 2.101967
+DAMPED = (0.518265, 0.518271, 2.101880, 2.101957), (0.0041356, 0.0041353, 0.0074137, 0.0074138)
+DISPLACED, TURNED = 0.02853654, 6.0444e-4       # m and rad under 1 MN
+
+
+def measure(division: int, whole: bool) -> Mapping[str, float]:
+    """Values of the quantities; there is nothing to divide."""
+    held = jacket(damped=False)
+    held.fix("interface")
+    pushed = jacket()
+    pushed.force("interface", (1e6, 0.0, 0.0))
+    rest = equilibrium(pushed, 1)
+    damped = modes(equilibrium(jacket(top=True), 1))
+    found = {"interface clamped": vibrations(held, 6).frequency,
+             "interface free": vibrations(jacket(damped=False), 8).frequency,
+             "with 350 t": vibrations(jacket(False, top=True), 4).frequency,
+             "with 350 t, damped": np.abs(damped.values[:4]) / (2 * np.pi)}
+    return ({f"{label}, mode {k + 1} [Hz]": value for label, values in found.items()
+             for k, value in enumerate(values)}
+            | {f"with 350 t, ratio {k + 1}": value for k, value in enumerate(damped.damping[:4])}
+            | {"x under 1 MN [m]": rest["interface.position"][-1, 0] - INTERFACE[0],
+               "ry under 1 MN [rad]": rest["interface.rotation"][-1][0, 2]})
+
+
+CASE = Case(
+    "Jacket as a foundation superelement", "OpenFAST r-test, glue-codes/openfast/"
+    "5MW_OC4Jckt_ExtPtfm/ExtPtfm_SE.dat (commit 1c334a71)", measure,
+    (*(Quantity(f"{label}, mode {k + 1} [Hz]", value, printed=5e-7) for label, row in (
+        ("interface clamped", INTERFACE_CLAMPED), ("interface free", INTERFACE_FREE),
+        ("with 350 t", WITH_MASS), ("with 350 t, damped", DAMPED[0]))
+       for k, value in enumerate(row)),
+     *(Quantity(f"with 350 t, ratio {k + 1}", value, printed=5e-8)
+       for k, value in enumerate(DAMPED[1])),
+     Quantity("x under 1 MN [m]", DISPLACED, printed=5e-9),
+     Quantity("ry under 1 MN [rad]", TURNED, printed=5e-9)),
+    "matrices of the file; the numbers are those of an eigenvalue solver on them")
