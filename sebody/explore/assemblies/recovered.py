@@ -22,7 +22,7 @@ _DOFS = {2: ("x", "y", "rz"), 3: ("x", "y", "z", "rx", "ry", "rz")}
 class Inside(NamedTuple):
     """Recovered quantities of an assembly, and which of its FE nodes are of what, in words."""
 
-    recovery: Recovery
+    recovery: Recovery | None
     numbers: str
 
 
@@ -42,6 +42,8 @@ def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArr
     names = [one.name for one in known]
     if nodes:
         parts.append(_of_nodes(nodes))
+    if not parts:
+        return Inside(None, "nothing inside is recovered: its bodies are reduced matrices alone")
     D = parts[0].dimension
     dofs = _DOFS[D] if any(len(one.node_dofs) > D for one in parts) else _DOFS[D][:D]
     coordinates = np.vstack([one.coordinates for one in parts])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from sebody.explore.assemblies.wanted import Interfaces
 from sebody.model.extent import extent
 from sebody.model.model import Model
 from sebody.model.numbering import record_counts, stretch
+from sebody.model.parts import DofBlock
 from sebody.results.result import Result
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.simulation import Simulation
@@ -119,18 +121,25 @@ def _take(run: Simulation, held: Result, interfaces: Interfaces) -> None:
         at, was = after.modes[name], before.modes[name]
         state.q[at:at + body.reduced.modes] = q[was:was + body.reduced.modes]
     state.frames[:9 * len(run.model.bodies)] = frames[:9 * len(run.model.bodies)]
-    multipliers = {one.name: at for one, at in before.multipliers.items()}
-    for one, at in after.multipliers.items():
-        was = multipliers[one.name]
-        state.q[at:at + one.multipliers] = q[was:was + one.multipliers]
-    kept = {load.name: places for load, places in before.memories.items()}
-    for load, places in after.memories.items():
-        state.frames[places] = frames[kept[load.name]]
+    for old_joint, joint in _matched(held.model.joints, run.model.joints):
+        for old_one, one in zip(old_joint.constraints, joint.constraints, strict=True):
+            at, was = after.multipliers[one], before.multipliers[old_one]
+            state.q[at:at + one.multipliers] = q[was:was + one.multipliers]
+    for old_load, load in _matched(held.model.loads, run.model.loads):
+        if load in after.memories:
+            state.frames[after.memories[load]] = frames[before.memories[old_load]]
     state.q_old[:], state.R_old[:], state.v_old[:] = state.q, state.R, state.v
     state.frames_old[:] = state.frames
 
 
-def _blocks(before: Model, after: Model):
+def _matched(before: Sequence, after: Sequence) -> Iterator[tuple]:
+    """Elements of a model that are left in a copy, with those of the copy, in their order."""
+    rest = iter(before)
+    for one in after:
+        yield next(other for other in rest if (other.name, other.kind) == (one.name, one.kind)), one
+
+
+def _blocks(before: Model, after: Model) -> Iterator[tuple[DofBlock, DofBlock]]:
     """DOF blocks of the same nodes of two models."""
     nodes = [*zip(before.nodes.values(), after.nodes.values(), strict=True),
              *zip(before.grounds, after.grounds, strict=True)]
