@@ -107,7 +107,7 @@ class Deformation:
         R = {k: state.R[9 * r:9 * r + 9].reshape(3, 3) for k, (_, r) in self.turns.items()}
         middle, centre = np.mean(list(x.values()), axis=0), self.points[list(x)].mean(axis=0)
         arms = {k: self.points[k] - centre for k in self.positions}
-        axes = _nearest(np.sum(list(R.values()) if R else [
+        axes = rotations.nearest(np.sum(list(R.values()) if R else [
             np.outer(x[k] - middle, arms[k]) for k in x], axis=0))
         d, T = [], []
         for k in x:
@@ -151,9 +151,3 @@ class Deformation:
             gamma = [W @ W @ (p - middle) for p in x.values()]
         gamma.append(np.zeros(len(self.own) - sum(map(len, gamma))))
         return np.concatenate(d), motion, np.concatenate(gamma)
-
-
-def _nearest(A: NDArray) -> NDArray:
-    """The rotation that is nearest to a matrix."""
-    U, _, Vt = np.linalg.svd(A)
-    return U @ np.diag([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))]) @ Vt

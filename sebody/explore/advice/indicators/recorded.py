@@ -11,6 +11,7 @@ from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.model.variants import divide
 from sebody.reduction.body import ReducedBody
+from sebody.results import rotations
 from sebody.results.result import Result
 
 MORE = 2            # times the most modes that forms have, which are looked at
@@ -112,7 +113,7 @@ class Recorded:
         known = [_matrices(one) for one in R if one is not None]
         arms = points - points[placed].mean(axis=0)
         places = x - x[:, placed].mean(axis=1)[:, None]
-        axes = _nearest(sum(known) if known else np.einsum("nki,kj->nij", places, arms))
+        axes = rotations.nearest(sum(known) if known else np.einsum("nki,kj->nij", places, arms))
         shifts = np.einsum("nji,nkj->nki", axes, places) - arms
         planar, parts = points.shape[1] == 2, []
         for one in R:
@@ -165,27 +166,16 @@ def _seen(part: Part, count: int) -> int:
     return max(most, min(MORE * most, inner))
 
 
-def _matrices(rotations: NDArray) -> NDArray:
+def _matrices(history: NDArray) -> NDArray:
     """Rotation matrices of a history of matrices, or of angles in a plane."""
-    if rotations.ndim == 3:
-        return rotations
-    c, s = np.cos(rotations), np.sin(rotations)
+    if history.ndim == 3:
+        return history
+    c, s = np.cos(history), np.sin(history)
     return np.stack([np.stack([c, -s], axis=1), np.stack([s, c], axis=1)], axis=1)
-
-
-def _nearest(A: NDArray) -> NDArray:
-    """Rotations nearest to matrices, (n, d, d)."""
-    U, _, Vt = np.linalg.svd(A)
-    U[:, :, -1] *= np.linalg.det(U @ Vt)[:, None]
-    return U @ Vt
 
 
 def _angles(R: NDArray) -> NDArray:
     """Rotation vectors of moderate rotations, (n, 3), in a plane (n, 1)."""
     if R.shape[1] == 2:
         return np.arctan2(R[:, 1, 0], R[:, 0, 0])[:, None]
-    axial = np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]],
-                     axis=1) / 2
-    sine = np.linalg.norm(axial, axis=1)
-    angle = np.arctan2(sine, (np.trace(R, axis1=1, axis2=2) - 1) / 2)
-    return axial * (angle / np.maximum(sine, 1e-300))[:, None]
+    return rotations.vectors(R)
