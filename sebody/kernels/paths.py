@@ -57,11 +57,13 @@ def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
         head[SLOPE + c] = _row(path, first + c, size, head, 1)
         head[BEND + c] = _row(path, first + c, size, head, 2)
     for k in range(n):
-        _add(path, first + dimension * (1 + k), size, dimension, y[k], head)
         for c in range(dimension):
             at = first + dimension * (1 + k) + c
-            shapes[dimension * k + c] = _row(path, at, size, head, 0)
-            slopes[dimension * k + c] = _row(path, at, size, head, 1)
+            shape, slope = _row(path, at, size, head, 0), _row(path, at, size, head, 1)
+            head[ARM + c] += y[k] * shape
+            head[SLOPE + c] += y[k] * slope
+            head[BEND + c] += y[k] * _row(path, at, size, head, 2)
+            shapes[dimension * k + c], slopes[dimension * k + c] = shape, slope
     for b in range(followers):
         at, eta = first + dimension * (1 + n + b), 0.0
         for c in range(dimension):
@@ -112,15 +114,21 @@ def path_loads(path, s, y, n, dimension, head, shapes, slopes, bends, head_1, sh
 @compiled
 def path_change(path, bends, dy, n, dimension, changes):
     """Changes of the shapes of `path_place` as coordinates change, through the followers."""
-    followers = int(path[1])
+    knots, followers = int(path[0]), int(path[1])
     size = dimension * (1 + n + followers)
+    first = HEAD + knots + 2 * size * knots
     for k in range(n * dimension):
         changes[k] = 0.0
-    for b in range(followers):
-        for k in range(n):
-            moved = _followed(path, b, k, dy, n, size)
+    for i in range(n):      # most columns of a matrix move few coordinates
+        if dy[i] == 0.0:
+            continue
+        for b in range(followers):
             for c in range(dimension):
-                changes[dimension * k + c] += bends[dimension * b + c] * moved
+                factor, row = bends[dimension * b + c] * dy[i], first + (b * n + i) * n
+                if factor == 0.0:
+                    continue
+                for k in range(n):
+                    changes[dimension * k + c] += factor * path[row + k]
 
 
 @compiled
@@ -178,11 +186,17 @@ def _add(path, at, size, dimension, factor, head):
 @compiled
 def _followed(path, b, k, y, n, size):
     """Row k of ``Q_b y``."""
-    knots, total = int(path[0]), 0.0
+    knots = int(path[0])
     first = HEAD + knots + 2 * size * knots + (b * n + k) * n
-    for i in range(n):
-        total += path[first + i] * y[i]
-    return total
+    one = two = three = four = 0.0      # sums that do not wait for each other
+    for i in range(0, n - 3, 4):
+        one += path[first + i] * y[i]
+        two += path[first + i + 1] * y[i + 1]
+        three += path[first + i + 2] * y[i + 2]
+        four += path[first + i + 3] * y[i + 3]
+    for i in range(n - n % 4, n):
+        one += path[first + i] * y[i]
+    return (one + two) + (three + four)
 
 
 @compiled

@@ -95,6 +95,9 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     """
     joint = _joint(model, joint)
     what = f"friction in {joint.name!r}"
+    if joint.kind == "path":
+        raise InputError(f"{what}: along a path there is no friction yet: use it in joints or "
+                         "contacts")
     sliding = _sliding(joint)
     dry = checked_friction(what, coefficient, static, bristle, damping, speed)
     if slip is not None:
