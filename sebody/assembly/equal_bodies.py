@@ -3,6 +3,7 @@
 Which are depends on the model and on the way to compile, never on what was compiled before.
 """
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 from importlib import import_module
@@ -22,9 +23,9 @@ from sebody.kernels.loader import load
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Superelement
 
-FEWEST = 8      # equal bodies from which on eight at a time take less time than one by one
+FEWEST = 4      # equal bodies from which on eight at a time take less time than one by one
 # squares of their coordinates, summed: kernels take seconds to compile, and short ones gain less
-WORTH_IT, WORTH_SHORT = 2_000, 8_000
+WORTH_IT, WORTH_SHORT = 1_000, 8_000
 DIGITS = 12     # of frame weights, which rotations change by rounding
 
 
@@ -74,6 +75,12 @@ def lanes_exist() -> bool:
 def evaluated_together(model: Mechanism) -> dict[str, Group]:
     """The groups of bodies that are evaluated eight at a time, by the names of bodies."""
     return many_alike(model) if lanes_exist() else {}
+
+
+def most_together(model: Mechanism) -> int:
+    """How many bodies the largest group of them has that are evaluated eight at a time."""
+    groups = Counter(id(group) for group in evaluated_together(model).values())
+    return max(groups.values(), default=0)
 
 
 def kernels_together(models: Iterable[Mechanism]) -> set[str]:

@@ -35,7 +35,7 @@ CONTROL = np.dtype([(name, np.int64) for name in (
     "level",                 # how often the output step is halved
     "iteration",             # corrections in this step
     "fresh",                 # factorizations in this step
-    "wanted",                # what the next iteration needs: KEPT, ROTATED or EVALUATED
+    "wanted",                # what the next iteration needs: KEPT to RENEWED
     "reason",                # why the last step failed
     "iterations",            # corrections since the start
     "matrices",              # factorizations since the start

@@ -57,7 +57,7 @@ from sebody.engine.state import (
     SOLVE,
     SOLVED,
 )
-from sebody.engine.step import accept, back, begin_step, cut_step, write_record
+from sebody.engine.step import accept, back, begin_step, cut_step, renew_bodies, write_record
 from sebody.engine.step_control import (
     NEAR,
     SHORTEST,
@@ -118,6 +118,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 choose_step(system, state)
             elif system.corners.size > 0:
                 choose_part(system, state)
+            renew_bodies(system, state, scheme)
             begin_step(system, state, scheme)
             begin_with_matrix(state)
             control.phase = ITERATE

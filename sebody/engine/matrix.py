@@ -201,7 +201,7 @@ def refactorize(system, state, wanted, dense):
 
     Returns False if a small matrix is singular. Where elimination meets a small pivot, PIVOTED is
     set and `State.matrix` holds the sum, for a factorization with row exchanges. The scales are
-    those of the last matrix of new element matrices.
+    those of the first matrix of the last new element matrices.
     """
     regularized = system.regularized[0] == 1
     condensed = wanted == ROTATED and are_condensed(system, state)
@@ -209,7 +209,7 @@ def refactorize(system, state, wanted, dense):
     sum_matrices(system, state, state.forces, condensed)
     if wanted == ROTATED and not condensed:     # the next one condenses
         state.control.refreshed = 1
-    if wanted == EVALUATED:
+    if wanted == EVALUATED or state.control.age == 0:
         equilibrate(system, state)
     state.control.regularized = 0
     if dense:

@@ -20,6 +20,7 @@ from sebody.engine.state import (
     KEPT,
     LEAVES_GAP,
     NEW_MATRIX,
+    RENEWED,
     ROTATED,
 )
 from sebody.engine.vectors import swap
@@ -31,7 +32,9 @@ UNSURE = 0.5            # lower bound of the rate in the first iteration, which 
 FASTEST = 1e-3          # lower bound of estimated contraction rates
 BASELINE_STEPS = 3      # steps after a refactorization whose best contraction rate is the baseline
 REFACTORIZATION_COST = 10.0     # of a matrix with new element matrices, in iterations
-ROTATED_COST = 4.0      # of a matrix with the bodies' old element matrices, rotated, in iterations
+ROTATED_COST = 4.0      # of an inverse with old element matrices of bodies, rotated, in iterations
+ROTATED_BLOCKS_COST = 1.5       # the same of a matrix that is factorized by blocks
+BENT = 0.9              # a rate of the second correction below this is no fault of a new matrix
 LONGEST_BACK_OFF = 32   # at most so many steps refresh the matrix before reuse is tried again
 OLDEST_ROTATED = 32     # steps with the same ones, after which a refreshed matrix takes new ones
 OLDEST = 3000           # steps with the same element matrices: see `watch_age`
@@ -184,7 +187,11 @@ def _verdict(system, state, norm, left_norm, target):
         return GIVE_UP
     if iteration == 0 or control.fresh >= MOST_MATRICES:
         return GO_ON
-    cost = REFACTORIZATION_COST if next_matrix(system, state) == EVALUATED else ROTATED_COST
+    if iteration == 1 and control.fresh > 0 and rate < BENT:
+        return GO_ON        # what the first correction bends the second one stretches
+    cost = REFACTORIZATION_COST
+    if next_matrix(system, state) == ROTATED:
+        cost = ROTATED_COST if state.inverse.size > 1 else ROTATED_BLOCKS_COST
     slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(cost, left)
     return NEW_MATRIX if slow else GO_ON
 
@@ -235,9 +242,12 @@ def begin_with_matrix(state):
     control.fresh = 0
     if clock.factor_step != clock.current_step:
         control.wanted = EVALUATED
-    if control.wanted == KEPT and control.back_off_left > 0:
+    renewed, left = control.wanted == RENEWED, control.back_off_left > 0
+    if left and (renewed or control.wanted == KEPT):
         control.back_off_left -= 1
         control.wanted = EVALUATED if control.age >= OLDEST_ROTATED else ROTATED
+    if renewed:
+        control.wanted = ROTATED
 
 
 @compiled(forceinline=True)
@@ -255,12 +265,19 @@ def want_matrix(system, state):
 
 
 @compiled(forceinline=True)
+def forget_matrix(state):
+    """Reset what is known of the convergence with the bodies' old element matrices."""
+    clock, control = state.clock, state.control
+    control.age, clock.baseline_contraction, clock.excess = 0, 0.5, 0.0
+    clock.factor_step, control.refreshed = clock.current_step, 0
+
+
+@compiled(forceinline=True)
 def count_matrix(state, wanted):
     """Reset what belongs to the old matrix, before the new one is factorized."""
-    clock, control = state.clock, state.control
+    control = state.control
     if wanted == EVALUATED:
-        control.age, clock.baseline_contraction, clock.excess = 0, 0.5, 0.0
-        clock.factor_step, control.refreshed = clock.current_step, 0
+        forget_matrix(state)
     else:
         control.refreshed += 1
     control.wanted = KEPT

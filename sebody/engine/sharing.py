@@ -26,6 +26,7 @@ from sebody.engine.state import (
     EVALUATED,
     HELP,
     KEPT,
+    RENEWED,
     SHARE_BACK,
     SHARE_FACTORS,
     SHARE_MOVED,
@@ -70,7 +71,7 @@ def _do_together(system, state, task):
     count = system.part_blocks.size - 1
     if task <= SHARE_MOVED:
         count = 0
-        for b in range(system.address.size):
+        for b in range(system.first_joint[0] if task == RENEWED else system.address.size):
             count += (system.count[b] + SHARE - 1) // SHARE
     owner = address_of(pointer_to(state.matrix))
     call = load(at(mail, CALL))
@@ -135,5 +136,5 @@ def _evaluate(system, state, task, piece, thread):
     work = at(pointer_to(system.shared.work), thread * system.shared.work.shape[1])
     if task == SHARE_MOVED:
         return run_moved_share(system, state, b, first, count, before, limit_of_moved(state), work)
-    matrices = task == EVALUATED or (task != KEPT and b >= system.first_joint[0])
+    matrices = task >= EVALUATED or (task != KEPT and b >= system.first_joint[0])
     return run_part(TANGENT if matrices else RESIDUAL, b, first, count, system, state, work)

@@ -14,11 +14,13 @@ DONE, CHUNK, FACTOR, SOLVE, FAILED, READ = range(6)     # what the loop returns
 # phases of the loop: where it continues when it is called again
 BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
 # what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
-# element matrices are rotated with them and all others are new; or of new element matrices only
-KEPT, ROTATED, EVALUATED = range(3)
-# tasks of threads, see `engine.sharing`: forces, of KEPT to EVALUATED or of elements that moved
+# element matrices are rotated with them and all others are new; of new element matrices only; or
+# ROTATED ones that were new in the state before the step, see `step.renew_bodies`
+KEPT, ROTATED, EVALUATED, RENEWED = range(4)
+# tasks of threads, see `engine.sharing`: forces and matrices of KEPT to EVALUATED, or of RENEWED
+# those of bodies alone; forces of elements that moved
 SHARE_MOVED, SHARE_SUM, SHARE_FACTORS, SHARE_SOLUTION, SHARE_BACK, HELP = range(
-    EVALUATED + 1, EVALUATED + 7)
+    RENEWED + 1, RENEWED + 7)
 CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after a correction
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK

@@ -12,11 +12,20 @@ from sebody.contract.layout import (
     C_GEO,
     C_MASS,
     C_STIFFNESS,
+    OK,
     RECORD_ITERATIONS,
     RECORD_T,
+    TANGENT,
 )
-from sebody.engine.evaluate import move_prescribed, set_loads_beside, update_rotations
-from sebody.engine.newton import SLOWEST, watch_age
+from sebody.engine.calls import call_share
+from sebody.engine.evaluate import (
+    move_prescribed,
+    run_kernels,
+    set_loads_beside,
+    set_tangent_operators,
+    update_rotations,
+)
+from sebody.engine.newton import OLDEST_ROTATED, SLOWEST, forget_matrix, watch_age
 from sebody.engine.prediction import BEFORE, FITTED, LAST, look_back, ring_place, row
 from sebody.engine.state import (
     ASKED,
@@ -26,6 +35,7 @@ from sebody.engine.state import (
     FINEST,
     JUMP,
     KEPT,
+    RENEWED,
     SAMPLED,
 )
 from sebody.engine.step_control import LONGEST, NEAR, SHORTEST, forget_errors, go_on, set_end
@@ -34,6 +44,34 @@ from sebody.kernels.abi import at, pointer_to
 
 ORTHOGONAL = 8          # steps after which rotation matrices are made orthogonal again
 MEMORY = 0.99           # factor of the largest norm of accelerations, in every step
+FIRST_RENEWED = 2       # steps before the first whose matrices are made before it is predicted
+
+
+@compiled
+def renew_bodies(system, state, scheme):
+    """Make new element matrices of bodies before the next step is predicted, if it wants new ones.
+
+    The errors of a predicted state stretch stiff bodies, and the false axial forces would be in
+    their geometric stiffness. Not where factors are kept for samples, whose matrices are others.
+    """
+    control, clock = state.control, state.clock
+    if (system.first_joint[0] == 0 or clock.factor_step != clock.current_step
+            or control.iteration == 0 or control.steps < FIRST_RENEWED or control.pivoted == 1
+            or system.regularized[0] == 1 or state.spare.size > 0):
+        return
+    aged = (control.wanted == KEPT and control.back_off_left > 0
+            and control.age >= OLDEST_ROTATED)
+    if control.wanted != EVALUATED and not aged:
+        return
+    set_coefficients(state, scheme, clock.current_step)     # a restart has others
+    set_tangent_operators(system, state)
+    if system.routines[3] != 0:
+        status = call_share(system.routines[3], system, state, RENEWED, 0)
+    else:
+        status = run_kernels(TANGENT, 0, system.first_joint[0], system, state)
+    if status == OK:
+        forget_matrix(state)
+        control.wanted = RENEWED
 
 
 @compiled(forceinline=True)
@@ -45,7 +83,8 @@ def begin_step(system, state, scheme):
     offset = h / state.clock.aux_step
     # after rejected steps and new matrices, and in parts of steps, which come where a motion is
     # not smooth, nothing is predicted to change
-    kept = (state.control.fresh == 0 and state.control.wanted == KEPT and offset == 1.0
+    wanted = state.control.wanted
+    kept = (state.control.fresh == 0 and (wanted == KEPT or wanted == RENEWED) and offset == 1.0
             and state.control.level == 0)
     if state.control.iteration > 0 and state.control.steps > 0:     # no step that is repeated
         look_back(system, state, scheme.beta * h * h)

@@ -370,3 +370,12 @@ def test_blades_on_a_tower_by_two_methods():
     rows = imported("bench_rotors").blades(4.0)
     assert len(rows) == 7 and max(row["floquet"] for row in rows) < 1e-6
     assert all(row["damping"] > 1e-4 for row in rows)
+
+
+def test_small_mechanisms_are_compared_with_another_version():
+    """With this one itself: the same counts, and runs of a tight tolerance nearby."""
+    bench = imported("bench_small")
+    row = bench.measure("2 links", [bench.Version(), bench.Version()], pairs=1)
+    own, other = ({key: value for key, value in one.items() if key != "us"} for one in row["rows"])
+    assert own == other and own["cuts"] == 0 and 3.0 < own["corrections"] < 4.5
+    assert row["ratio"] > 0.0 and 1e-10 < own["deviations"][0] < 1e-5

@@ -13,6 +13,7 @@ from sebody import (
     Model,
     Simulation,
     Tolerance,
+    generalized_alpha,
     piecewise,
 )
 from sebody.fem import Section, straight_beam
@@ -59,7 +60,10 @@ def test_frames_that_gained_energy_keep_it(struck, options):
 
 
 def test_the_same_in_other_units_and_places():
-    """In millimetres and grams, turned and far from the origin, the same step is rejected first."""
+    """In millimetres and grams, turned and far from the origin, the same step is rejected first.
+
+    With a tight tolerance: what Newton's iteration leaves grows in such motions, too.
+    """
     struck = u_frame()
     turn = Rotation.from_rotvec([0.4, 1.1, -0.3]).as_matrix()
     section = Section(area=struck.section.area * 1e6, torsion=struck.section.torsion * 1e12,
@@ -70,7 +74,8 @@ def test_the_same_in_other_units_and_places():
     other = struck._replace(
         points=1e3 * struck.points @ turn.T + np.array([4e3, -7e3, 2e3]), section=section,
         spin=tuple(turn @ struck.spin), forces=1e6 * struck.blows() @ turn.T)
-    one, another = (run(frame.model(**SOFT), 1e-3, 0.06)[0].state.guard
+    scheme = generalized_alpha(tolerance=1e-12)
+    one, another = (run(frame.model(**SOFT), 1e-3, 0.06, scheme=scheme)[0].state.guard
                     for frame in (struck, other))
     assert one.rejections > 0
     assert another.first == one.first

@@ -143,7 +143,6 @@ def _come_back(state, apart, own, member):
             own.aux_old[i] += more
     if own.clock.factor_step != clock.current_step:
         own.control.wanted = EVALUATED
-    clock.factor_step = clock.current_step
     for k in apart.places:
         lanes[k, member] = numbers[member, k]
     for k in range(apart.control_words.shape[0]):

@@ -24,7 +24,7 @@ SHARED = {"is_multiplier", "table_times", "corners", "prescribed_factor", "memor
 OWN_GROUPS = {"control"}        # of a system: read by single runs of the members alone
 SAMPLED = {"periods", "offsets"}        # and what of it is the same for all
 # scalars of all members together; the other ones of the records are lanes
-TIMES = {"time", "step", "current_step", "factor_step", "aux_step", "chosen", "end", "beside",
+TIMES = {"time", "step", "current_step", "aux_step", "chosen", "end", "beside",
          "allowed", "origin", "begun", "rate", "rate_before", "natural"}
 WHOLE = {"phase", "grid", "unit", "level", "recorded", "pivoted", "adaptive", "corner",
          "meets", "split", "inside", "restart", "due", "held", "piece", "regularized", "cuts",

@@ -29,13 +29,13 @@ from sebody.engine.lanes.apart import (
 from sebody.engine.lanes.evaluated import write_evaluated
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.guard import contact_too_fast
-from sebody.engine.lanes.matrix import factorize
+from sebody.engine.lanes.matrix import factorize, renew_bodies
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
 from sebody.engine.newton import take_shift
 from sebody.engine.prediction import look_back
-from sebody.engine.state import EVALUATED, KEPT, ROTATED
+from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED
 from sebody.engine.step import predict, settle
 from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
@@ -55,6 +55,7 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
             control.reason = where(control.reason == RUNS, spread(JUMPS), control.reason)
         running = control.reason == RUNS
         if some(running):
+            renew_bodies(system, state, scratch, alone, together, scheme, running)
             _begin_step(system, state, scheme)
             _iterate(system, state, scratch, alone, together, scheme, running, dense)
             _look_at_step(system, state, scratch)
@@ -93,7 +94,8 @@ def _begin_step(system, state, scheme):
     offset = clock.current_step / clock.aux_step
     if control.grid > 0:
         look_back(system, state, scheme.beta * clock.current_step * clock.current_step)
-    kept = (control.fresh == 0.0) & (control.wanted == float(KEPT))
+    kept = (control.fresh == 0.0) & (
+        (control.wanted == float(KEPT)) | (control.wanted == float(RENEWED)))
     predict(system, state, scheme, where(kept, spread(1.0), spread(0.0)), offset)
     begin_with_matrix(state)
     control.iteration = control.secant = spread(0.0)

@@ -8,10 +8,11 @@ other want one in nearly every step: see `sebody.engine.lanes.together`.
 import math
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import chosen_in, number_of, spread, where, with_number
+from sebody.compiler.inside.lanes import chosen_in, number_of, some, spread, where, with_number
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import OK, TANGENT
 from sebody.engine.arrays import Arrays
@@ -20,8 +21,11 @@ from sebody.engine.evaluate import run_kernels, set_tangent_operators
 from sebody.engine.lanes.apart import CUT, GAVE_UP, RUNS
 from sebody.engine.lanes.together import EVALUATED as NEW_BODIES
 from sebody.engine.lanes.together import MADE, WANTED
-from sebody.engine.state import EVALUATED, KEPT, ROTATED, State
+from sebody.engine.newton import OLDEST_ROTATED
+from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED, State
+from sebody.engine.step import FIRST_RENEWED, set_coefficients
 from sebody.engine.system import System
+from sebody.engine.vectors import copy
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +74,7 @@ def factorize(system, state, alone, together, begun, dense, wanted, evaluated):
                 found = with_number(found, member, why)
                 clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
     failed = found != RUNS
-    clock.factor_step = clock.current_step
-    clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
-    clock.excess = where(evaluated, zero, clock.excess)
-    control.age = where(evaluated, zero, control.age)
+    _forget(state, evaluated)
     control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
     one = where(wanted, spread(1.0), zero)
     control.secant = where(wanted, zero, control.secant)
@@ -81,6 +82,63 @@ def factorize(system, state, alone, together, begun, dense, wanted, evaluated):
     control.matrices += one
     control.reason = where(failed, found, control.reason)
     return failed
+
+
+@compiled(forceinline=True)
+def _forget(state, evaluated):
+    """Reset what some members know of the convergence with old element matrices."""
+    clock, control, zero = state.clock, state.control, spread(0.0)
+    clock.factor_step = where(evaluated, spread(clock.current_step), clock.factor_step)
+    clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
+    clock.excess = where(evaluated, zero, clock.excess)
+    control.age = where(evaluated, zero, control.age)
+
+
+@compiled
+def renew_bodies(system, state, scratch, alone, together, scheme, running):
+    """Make new element matrices of members before their step: see `sebody.engine.step`."""
+    control, clock = state.control, state.clock
+    if system.first_joint[0] == 0 or system.regularized[0] == 1 or state.spare.size > 0:
+        return
+    aged = ((control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
+            & (control.age >= float(OLDEST_ROTATED)))
+    renewed = (running & (clock.factor_step == spread(clock.current_step))
+               & (control.iteration > 0.0) & (control.steps >= float(FIRST_RENEWED))
+               & (aged | (control.wanted == float(EVALUATED))))
+    if not some(renewed):
+        return
+    set_coefficients(state, scheme, clock.current_step)
+    if together.routine[0] != 0:
+        asked, zero, one = together.asked, spread(0.0), spread(1.0)
+        copy(state.frames, scratch.frames)      # which `Together.begun` are
+        asked[WANTED], asked[NEW_BODIES] = zero, where(renewed, one, zero)
+        call_refactorize_together(together.routine[0], system, state, together)
+    else:
+        made = spread(0.0)
+        for member in range(MEMBERS):
+            if chosen_in(renewed, member) and _renew_one(state, alone, member):
+                made = with_number(made, member, 1.0)
+        renewed = made > 0.0
+    _forget(state, renewed)
+    control.wanted = where(renewed, spread(float(RENEWED)), control.wanted)
+
+
+@compiled
+def _renew_one(state, alone, member):
+    """Make the element matrices of a member; returns whether its bodies have frames."""
+    system, one, floats, numbers = alone.system, alone.state, alone.floats, alone.numbers
+    for k in range(alone.taken.size):
+        floats[alone.taken[k]] = numbers[alone.taken[k], member]
+    set_tangent_operators(system, one)
+    if run_kernels(TANGENT, 0, system.first_joint[0], system, one) != OK:
+        return False
+    for k in range(alone.J.shape[1]):
+        alone.J[member, k] = one.J[k]
+    for k in range(one.T.size):
+        state.T[k] = with_number(state.T[k], member, one.T[k])
+    for k in range(one.frames.size):
+        state.frames[k] = with_number(state.frames[k], member, one.frames[k])
+    return True
 
 
 @compiled(forceinline=True)
@@ -121,6 +179,7 @@ def _factorize_one(state, alone, begun, dense, member, wanted, of_step):
     for k in range(alone.taken.size):
         floats[alone.taken[k]] = numbers[alone.taken[k], member]
     one.clock.floor = number_of(state.clock.floor, member)
+    one.control.age = np.int64(number_of(state.control.age, member))
     first, kept = system.first_joint[0], alone.J.shape[1]
     if wanted == EVALUATED:
         first = 0

@@ -10,6 +10,7 @@ from sebody.engine.newton import (
     ACCELERATION_TOLERANCE,
     ASTRAY,
     BASELINE_STEPS,
+    BENT,
     FASTEST,
     LONGEST_BACK_OFF,
     MAX_ITERATIONS,
@@ -27,7 +28,7 @@ from sebody.engine.newton import (
     subtract,
 )
 from sebody.engine.regularization import regularized_norms
-from sebody.engine.state import EVALUATED, KEPT, ROTATED
+from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED
 
 HUGE = 1e300            # a norm above this is no number, or as good as none
 
@@ -119,13 +120,15 @@ def begin_with_matrix(state):
     """Choose which members factorize before their first iteration, and from which matrices."""
     control = state.control
     control.fresh = spread(0.0)
-    if state.clock.factor_step != state.clock.current_step:
-        control.wanted = spread(float(EVALUATED))
-    rotated = (control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
+    control.wanted = where(state.clock.factor_step == spread(state.clock.current_step),
+                           control.wanted, spread(float(EVALUATED)))
+    renewed, left = control.wanted == float(RENEWED), control.back_off_left > 0.0
+    rotated = left & (renewed | (control.wanted == float(KEPT)))
     control.back_off_left = where(rotated, control.back_off_left - 1.0, control.back_off_left)
     kind = where(control.age >= float(OLDEST_ROTATED), spread(float(EVALUATED)),
                  spread(float(ROTATED)))
-    control.wanted = where(rotated, kind, control.wanted)
+    control.wanted = where(renewed, spread(float(ROTATED)),
+                           where(rotated, kind, control.wanted))
 
 
 @compiled(forceinline=True)
@@ -134,12 +137,17 @@ def _want_matrices(system, state, left, rate, norm, target, iteration):
     control, rest = state.control, MAX_ITERATIONS - iteration - 1
     rotated = left & (control.fresh == 0.0) & (spread(float(system.linked[0])) == 1.0)
     few = many = norm
-    for _ in range(min(int(ROTATED_COST), rest)):
-        few = few * rate
+    if state.inverse.size > 1:
+        for _ in range(min(int(ROTATED_COST), rest)):
+            few = few * rate
+    elif rest > 0:
+        few = few * rate * (math.sqrt(rate) if rest > 1 else 1.0)   # ROTATED_BLOCKS_COST
     for _ in range(min(int(REFACTORIZATION_COST), rest)):
         many = many * rate
     slow = left & (control.fresh < float(MOST_MATRICES)) & (
         (rate > POOR) | (where(rotated, few, many) > target))
+    if iteration == 1:
+        slow = slow & ~((control.fresh > 0.0) & (rate < BENT))
     rotated = slow & rotated
     control.back_off = where(rotated, min(2.0 * control.back_off + 1.0,
                                           spread(float(LONGEST_BACK_OFF))), control.back_off)

@@ -50,16 +50,21 @@ class Together(Arrays):
 
 @compiled
 def refactorize(system, state, together):
-    """Make the matrices that are asked for."""
+    """Make the matrices that are asked for; if none is, those of bodies and their frames alone."""
     own, asked = together.state, together.asked
     wanted, evaluated = asked[WANTED] > 0.0, asked[EVALUATED] > 0.0
     if some(evaluated):
         _evaluate_bodies(system, state, together, evaluated)
+    if not some(wanted):
+        for k in range(state.frames.size):
+            state.frames[k] = where(evaluated, own.frames[k], state.frames[k])
+        return OK
     copy(state.frames, own.frames)
     run_kernels(TANGENT, system.first_joint[0], system.address.size, system, own)
     sum_matrices(system, own, state.forces, False)
-    if some(evaluated):
-        _equilibrate(system, own, evaluated)
+    scaled = evaluated | (wanted & (state.control.age == 0.0))
+    if some(scaled):
+        _equilibrate(system, own, scaled)
     elimination.eliminate_columns(0, system.block_diagonal.size, system, own, False,
                                   pointer_to(own.column))
     made = wanted

@@ -6,8 +6,9 @@ runs are asked for together or on what was compiled before: a run has the same b
 
 import numpy as np
 
-from sebody.assembly.equal_bodies import evaluated_together
+from sebody.assembly.equal_bodies import most_together
 from sebody.compiler import choice
+from sebody.contract.counts import MEMBERS
 from sebody.explore.ensembles.start_values import OWN_STARTS, Fact, Image
 from sebody.kernels.loader import element_kernel_name, takes_one_member
 from sebody.model.model import Model
@@ -28,8 +29,8 @@ FACTS = (       # each lets runs be made one by one alone
              element.law is None for element in one.numbering.memories)),
     Fact("joints and forces on paths, whose places are looked up in one run at a time",
          lambda one: any(e.path is not None for e in (*one.model.constraints, *one.model.loads))),
-    Fact("equal bodies, of which each run evaluates eight at a time",
-         lambda one: bool(evaluated_together(one.model))),
+    Fact("eight equal bodies or more, which each run evaluates eight at a time",
+         lambda one: most_together(one.model) >= MEMBERS),
 )
 
 

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.basics import inputs, memory
 from sebody.basics.errors import InputError
 from sebody.basics.progress import showing
@@ -69,6 +70,8 @@ class Ensemble:
                  output_every: int = 1, start: Result | None = None):
         self.model, self.scheme = cast(Model, copied(model)), scheme
         self._template = Simulation(self.model, h, scheme, output_every, start=start)
+        if not why_one_by_one(self._template):      # vectors are of runs then, not of bodies
+            evaluate_alone(self.model, self._template.system)
         self.h, self.every = self._template.h, self._template.every
         self._lock = Lock()         # the copy is changed for moments
         self._images: dict[tuple[str, ...], Image] = {}

@@ -76,8 +76,8 @@ def carried(image: Image) -> NDArray:
 
 
 def _of_bodies(system: System) -> int:
-    """Numbers of the element matrices of bodies, where these are rotated later."""
-    return int(system.at_J[system.first_joint[0]]) if system.linked[0] == 1 else 0
+    """Numbers of the element matrices of bodies."""
+    return int(system.at_J[system.first_joint[0]])
 
 
 def places(image: Image, *parts: NDArray, of_parameters: bool = True) -> NDArray:

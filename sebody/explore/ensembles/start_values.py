@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build
+from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.engine.offsets import Offsets, arrays_of, patterns
 from sebody.engine.state import State
 from sebody.engine.system import System
@@ -116,6 +117,8 @@ class Image:
         """
         one = self.template
         system, numbering = build(one.model, grid=one.grid)
+        if not np.array_equal(system.address, one.system.address):
+            evaluate_alone(one.model, system)       # as the template does, see `Ensemble`
         for name in ("routines", "regularized", "massless"):
             getattr(system, name)[:] = getattr(one.system, name)
         state = allocate(one.model, system, numbering, one.h, one.dense)
