@@ -25,6 +25,6 @@ def measure(division: int, whole: bool) -> Mapping[str, float]:
 
 
 CASE = Case(
-    "Composite beam with a 6 x 6 section", "Kynema, tests/regression_tests/regression/"
+    "Composite beam with a 6 x 6 section", "Kynema, regression_tests/regression/"
     "verification/static_composite_beam_bending.cpp (15 nodes; BeamDyn to 1e-14)", measure,
     quantities(composite()[3]), "32 nonlinear elements")
