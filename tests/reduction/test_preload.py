@@ -9,7 +9,7 @@ from sebody.analysis import Ensemble, equilibrium, final, gradient, modes
 from sebody.basics.errors import InputError
 from sebody.fem import Section, circle, straight_beam
 from sebody.io import load_body, save_body, write_sid
-from sebody.model.variants import copied, keep_modes
+from sebody.model.variants import copied, keep_modes, planar
 from sebody.reduction import ReducedBody, craig_bampton, reduce_model
 from sebody.reduction.preload import preload_of
 from sebody.reduction.rigid_motions import rigid_motions
@@ -259,6 +259,17 @@ def test_a_planar_arch_is_that_in_space():
     assert len(body.preload.tension) == 3
     spatial = reduce_model(flat_arch(False), ["n0", "n4"])
     assert spatial.coordinates[:, :2] == pytest.approx(body.coordinates, abs=1e-9)
+    model = Model()
+    nodes = [model.node(name, point) for name, point in zip("ab", spatial.coordinates, strict=True)]
+    model.superelement("arch", spatial, nodes)
+    model.fix("a")
+    model.force("b", (300.0, -100, 0))
+    model.torque("b", (0, 0, 25.0))
+    flat = planar(model).model          # with the springs of the preload
+    assert len(flat.loads) == len(model.loads)
+    found, whole = frequencies(equilibrium(flat, 2))[:4], frequencies(equilibrium(model, 2))
+    nearest = whole[np.abs(whole[:, None] / found - 1).argmin(axis=0)]      # those in the plane
+    assert found == pytest.approx(nearest, rel=1e-8)
 
 
 def test_forces_that_are_no_preload_are_refused():
