@@ -35,7 +35,7 @@ LEAST = 1e-2
 
 
 def machine(planar: bool) -> Model:
-    """A hinged beam with a slider, a rod, a spring, a stop, a motor, a sensor and a controller."""
+    """A hinged beam with a slider, a bead, a rod, a spring, a stop, a motor, and a controller."""
     model = Model(planar=planar)
     n = model.dimension
 
@@ -61,6 +61,10 @@ def machine(planar: bool) -> Model:
     model.spring(ball, collar, stiffness=20.0, damping=0.3, name="spring")
     model.stop("hinge", -0.1, 0.01, stiffness=1e3, name="stop")
     model.force(ball, point(0.6, 0.0, 0.8) if not planar else (0.6, 0.8), 2.0, name="push")
+    bead = model.node("bead", point(0.4, 0.3, 0.0), "translation")
+    model.point_mass("bead mass", bead, 0.1)
+    model.path("rail", on="beam")
+    model.path_joint(bead, "rail", name="runs")
     model.actuator("motor", joint="hinge")
     model.sensor("seen", "hinge.rate", rate=500.0)
     model.controller("loop", pid(2.0, 0.5, 0.1, 50.0), ["hinge.angle"], ["motor"], 0.002)
