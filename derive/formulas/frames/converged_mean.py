@@ -78,4 +78,4 @@ def mean_search(q: Quantities, operations: int) -> Search:
 
 FRAME = FrameOption(
     FrameTraits("weighted mean of the node rotations, iterated until it is one"), converged_mean,
-    condition)
+    "(14), and derive/formulas/frames/converged_mean.py", condition)

@@ -55,6 +55,7 @@ class FrameOption(NamedTuple):
 
     traits: FrameTraits
     derive: Callable[[Quantities], Frame]
+    equations: str      # where they stand: those of Cardona (2000) by their numbers, or a file
     # the whole of that of its `Frame`; of frames that depend on the last step to first order
     condition: Callable[[Quantities], Condition] | None = None
 

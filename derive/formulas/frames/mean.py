@@ -71,4 +71,4 @@ def _check_variation(q: Quantities) -> None:
 
 FRAME = FrameOption(
     FrameTraits("the paper's weighted mean of rotation increments since the last step",
-                planar=False, incremental=True), mean, condition)
+                planar=False, incremental=True), mean, "(14)-(16), (18), (19)", condition)

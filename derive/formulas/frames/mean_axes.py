@@ -135,4 +135,5 @@ def _search(q: Quantities) -> Search:
 
 FRAME = FrameOption(
     FrameTraits("axes in which the deformation has no moment of momentum: mean axes",
-                needs_rotations=False, modes=True, constants=(GAM,)), mean_axes, condition)
+                needs_rotations=False, modes=True, constants=(GAM,)), mean_axes,
+    "(14), and derive/formulas/frames/mean_axes.py", condition)

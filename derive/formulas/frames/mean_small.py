@@ -25,4 +25,5 @@ def mean_small(q: Quantities) -> Frame:
 
 FRAME = FrameOption(
     FrameTraits("the paper's mean of rotation increments since the last step, varied for small "
-                "increments", planar=False, exact=False, incremental=True), mean_small, condition)
+                "increments", planar=False, exact=False, incremental=True), mean_small,
+    "(14)-(16), (20), (43), (44)", condition)

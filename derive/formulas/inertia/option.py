@@ -62,6 +62,7 @@ class InertiaOption(NamedTuple):
 
     traits: InertiaTraits
     derive: Callable[[Quantities], Inertia]
+    equations: str      # where they stand, as of a frame
     # counts that it reads from its constants, by their array: in a plane or in space
     read: Callable[[bool], dict[Array, tuple[Let, ...]]] = lambda planar: {}
     transposes: tuple[tuple[Array, Array], ...] = ()    # constants stored beside their transpose

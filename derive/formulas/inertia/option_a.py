@@ -66,4 +66,4 @@ def relative_rotating(Q: sp.Matrix, dth: sp.Matrix, dth0: sp.Matrix) -> Rules:
 INERTIA = InertiaOption(
     InertiaTraits("angular velocities in frame axes (option A)", "a", rank=0, cost=1.0,
                   softening=1.0, material=False, modes_apart=True),
-    option_a)
+    option_a, "(32)-(38), (40)-(47)")

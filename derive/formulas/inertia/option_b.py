@@ -37,4 +37,4 @@ def option_b(q: Quantities) -> Inertia:
 INERTIA = InertiaOption(
     InertiaTraits("material angular velocities (option B)", "b", rank=0, cost=1.0, softening=1.0,
                   material=True, modes_apart=True),
-    option_b)
+    option_b, "(32)-(35), (52)-(59)")

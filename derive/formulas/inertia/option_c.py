@@ -56,4 +56,4 @@ INERTIA = InertiaOption(
         cost=1.8, softening=0.0, material=True,
         rates=True, field=True,
         constants=PARTS),
-    option_c, counts_of_body, TRANSPOSES)
+    option_c, "(1)-(4) of derive/formulas/inertia/theory.md", counts_of_body, TRANSPOSES)

@@ -201,4 +201,4 @@ INERTIA = InertiaOption(
         cost=1.25, softening=0.3, material=True,
         rates=True,
         constants=PARTS),
-    option_d, counts_of_body)
+    option_d, "derive/formulas/inertia/rigid_part.py", counts_of_body)
