@@ -4,13 +4,16 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 
+from sebody.basics.progress import Progress
 from sebody.compiler import store, workers
 from sebody.compiler.choice import way
 from sebody.compiler.workers import Task
 
 WORTH_IT = 4.0                  # seconds of compiling: starting processes takes one or two
+LOOPS, USUAL = 200_000, 0.0105   # of Python, and their seconds where those of jobs were measured
 
 
 class Job(NamedTuple):
@@ -40,13 +43,32 @@ def compile_apart(jobs: Sequence[Job], what: str, source: Path,
         print(f"compiling {what}, about {seconds:.0f} s, at every start: "
               f"{store.not_writable(source)}", file=sys.stderr, flush=True)
         return
-    seconds /= workers.PROCESSES
+    seconds *= _slower() / workers.PROCESSES
     print(f"first run: compiling {what} in {workers.PROCESSES} processes, about {seconds:.0f} s",
           file=sys.stderr, flush=True)
-    began = time.perf_counter()
-    workers.call_all(longest_first(jobs), report)
-    print(f"compiled in {time.perf_counter() - began:.0f} s; later runs find it in the cache",
-          file=sys.stderr, flush=True)
+    began, bar = time.perf_counter(), Progress()
+    done: list[str] = []
+    one_at_a_time = Lock()      # each process has a thread that reports
+
+    def count(name: str, took: float) -> None:
+        with one_at_a_time:
+            done.append(name)
+            bar(len(done) / len(jobs))
+        if report:
+            report(name, took)
+
+    workers.call_all(longest_first(jobs), count)
+    bar.close()
+    print(f"compiled {len(done)} of {len(jobs)} parts in {time.perf_counter() - began:.0f} s; "
+          "later runs find them in the cache", file=sys.stderr, flush=True)
+
+
+def _slower() -> float:
+    """Seconds of this machine, as busy as it is, over those of the one of `USUAL`."""
+    began, total = time.perf_counter(), 0
+    for k in range(LOOPS):
+        total += k % 7
+    return (time.perf_counter() - began) / USUAL
 
 
 def longest_first(jobs: Sequence[Job]) -> list[Task]:
