@@ -87,5 +87,5 @@ def _searches(q: Quantities) -> tuple[Search, Search]:
 
 FRAME = FrameOption(
     FrameTraits("rotation of best fit of the node positions", needs_rotations=False,
-                fewest_positions=(3, 2)), positions, "(14), and derive/formulas/frames/positions.py",
-    condition)
+                fewest_positions=(3, 2)), positions,
+    "(14), and derive/formulas/frames/positions.py", condition)
