@@ -1,5 +1,6 @@
 """Scenes in a user's own files, and errors in them in words that name file and line."""
 
+import ast
 import sys
 import traceback
 from collections.abc import Callable
@@ -30,6 +31,7 @@ def load(path: str) -> ModuleType:
 
     source = content(path, "scene file", "give the name of a scene or the path of a file",
                      (".py",))
+    _refuse_scripts(path, source)
     file = Path(path).resolve()
     module = ModuleType(MODULE)
     module.__file__ = str(file)
@@ -40,6 +42,29 @@ def load(path: str) -> ModuleType:
     if not callable(getattr(module, "build", None)):
         raise InputError(f"scene file {path} has no function build: {REMEDY}")
     return module
+
+
+def _refuse_scripts(path: str, source: bytes) -> None:
+    """Refuse a file that defines no `build` before anything in it runs.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        statements = list(ast.walk(ast.parse(source)))
+    except (SyntaxError, ValueError):
+        return                          # told when the file is compiled
+    names = {one.name for one in statements
+             if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)}
+    names |= {one.id for one in statements
+              if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+    names |= {alias.asname or alias.name for one in statements
+              if isinstance(one, ast.Import | ast.ImportFrom) for alias in one.names}
+    if not names & {"build", "*"} and b"globals" not in source:
+        raise InputError(f"scene file {path} has no function build: {REMEDY}; 'sebody new {path}' "
+                         "writes one to begin with, in a file that is not there yet, and 'python "
+                         f"{path}' runs a script")
 
 
 def call(file: str, function: Callable[[], Any]) -> Any:

@@ -12,9 +12,11 @@ import numpy as np
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import without_symbols
+from sebody.basics.warned import warn
 from sebody.fem import fibres
 from sebody.fem.section import Outline, Section
 
+THICK = 0.8             # wall of a tube over its radius, from which it may be an inner radius
 ROUND = 16              # corners of a circle in pictures
 
 
@@ -82,7 +84,7 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     radius : float
         Outer radius [length].
     thickness : float
-        Of the wall [length].
+        Of the wall, not the inner radius [length].
     youngs_modulus, poisson_ratio, density : float
         Material.
 
@@ -95,6 +97,10 @@ def tube(radius: float, thickness: float, youngs_modulus: float, poisson_ratio: 
     if thickness > radius:
         raise InputError(f"tube: thickness is {thickness}, more than its radius {radius}; give "
                          "the thickness of the wall")
+    if THICK * radius < thickness < radius:
+        warn(f"tube: a wall of {thickness:g} in a radius of {radius:g} leaves a hole of radius "
+             f"{radius - thickness:g}: the second number is the thickness of the wall, not the "
+             "inner radius")
     inner, nu = radius - thickness, poisson_ratio
     second = np.pi / 4 * (radius**4 - inner**4)
     both, ratio = (1 + (inner / radius)**2)**2, (inner / radius)**2

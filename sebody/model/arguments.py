@@ -8,11 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
+from sebody.basics.warned import warn
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Joint, Motion, Node, Superelement
 
 PLANE = 1e-9        # largest part of an axis in the plane that is rounding
 AXES = "x", "y", "z"
+TURN = 2.0 * np.pi  # an angle beyond is warned of
 
 
 def known(model: Mechanism, node: Node | str) -> Node:
@@ -58,7 +60,7 @@ def named_axis(axis: ArrayLike, dimension: int, what: str) -> ArrayLike:
         return sign * np.eye(dimension)[AXES.index(letter)] + 0.0      # no -0
     if isinstance(axis, str):
         raise inputs.refusal(what, axis, f"give {dimension} finite numbers, or "
-                                         f"{' or '.join(AXES[:dimension])}")
+                                         f"{' or '.join(AXES[:dimension])}, with a minus or not")
     return axis
 
 
@@ -187,3 +189,11 @@ def known_joint(model: Mechanism, joint: object, what: str) -> Joint:
     if not isinstance(element, Joint) or element not in model.joints:
         raise inputs.refusal(what, joint, "give a joint of the model or its name")
     return element
+
+
+def warn_of_degrees(what: str, **angles: float) -> None:
+    """Warn of an angle beyond a turn, which may be one in degrees."""
+    for word, limit in angles.items():
+        if np.isfinite(limit) and abs(limit) > TURN:
+            warn(f"{what}: {word} is {limit:g}, which is {abs(limit) / TURN:.3g} turns: angles are "
+                 f"in radians, {limit:g} degrees are {np.radians(limit):.6g}")

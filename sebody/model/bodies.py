@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import permutations
 from os import PathLike
 from pathlib import Path
 
@@ -33,6 +34,8 @@ from sebody.model.parts import Element, Node, Superelement, positions, rotations
 from sebody.model.preloads import add_preload
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.summary import place
+
+FEW = 5         # boundary nodes of which all orders are tried
 
 
 def superelement(model: Mechanism, name: str, body: ReducedBody | str | Path,
@@ -242,12 +245,26 @@ def _check_place(name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
     allowed = 1e-6 * max(np.ptp(points, axis=0).max(), 1e-300)
     if error > allowed:
         own = ", ".join(place(point) for point in body.coordinates)
+        order = _fitting_order(points, body.coordinates, allowed)
         raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
                          f"boundary nodes are (off by {error:.3g} after the best shift), at {own}: "
-                         + ("pass rotation=, the matrix that turns FE axes into global axes"
+                         + (f"give them in the order {', '.join(nodes[k].name for k in order)}"
+                            if order else
+                            "pass rotation=, the matrix that turns FE axes into global axes"
                             if _turned(points, body.coordinates) <= allowed else
                             "give the nodes these places, or import the body with theirs "
                             "(@x,y,z); no rotation= makes them fit"))
+
+
+def _fitting_order(points: NDArray, coordinates: NDArray, allowed: float) -> tuple[int, ...]:
+    """Order in which points are others after a shift; none of more than `FEW` points."""
+    if len(points) > FEW:
+        return ()
+    for order in permutations(range(len(points))):
+        offset = points[list(order)] - coordinates
+        if np.abs(offset - offset.mean(axis=0)).max() <= allowed:
+            return order
+    return ()
 
 
 def _turned(points: NDArray, coordinates: NDArray) -> float:

@@ -7,9 +7,16 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.basics.warned import warn
 from sebody.contract.names import body_contact_kind
-from sebody.model.arguments import chosen_name, direction, dof_block, known, known_joint, vector
+from sebody.model.arguments import (
+    chosen_name,
+    direction,
+    dof_block,
+    known,
+    known_joint,
+    vector,
+    warn_of_degrees,
+)
 from sebody.model.body_points import body_point, start_place
 from sebody.model.frames import FRAMES
 from sebody.model.frictions import Dry, checked_friction, turning
@@ -29,7 +36,6 @@ from sebody.model.parts import (
 from sebody.model.signs import warn_of_sign
 from sebody.model.surfaces import Surface
 
-TURN = 2.0 * np.pi  # a limit of an angle beyond is warned of
 DEEP = 0.1          # of its radius, or of the model: a start in deeper contact is refused
 
 
@@ -76,21 +82,13 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
     high = np.inf if upper is None else inputs.number(upper, f"{what}: upper")
     checked_limits(what, low, high, start)
     if kind == "turn_stop":
-        warn_of_degrees(what, low, high)
+        warn_of_degrees(what, lower=low, upper=high)
     constants = impact_constants(what, restitution, at_speed, stiffness, exponent)
     name = chosen_name(model, name, what.replace("'", ""))
     made = Element(name, model.kind_of(kind), attachments,
                    constants | own | {"lower": low, "upper": high})
     model.loads.append(made)
     return made
-
-
-def warn_of_degrees(what: str, low: float, high: float) -> None:
-    """Warn of a limit of an angle beyond a turn, which may be one in degrees."""
-    for word, limit in (("lower", low), ("upper", high)):
-        if np.isfinite(limit) and abs(limit) > TURN:
-            warn(f"{what}: {word} is {limit:g}, which is {abs(limit) / TURN:.3g} turns: angles are "
-                 f"in radians, {limit:g} degrees are {np.radians(limit):.6g}")
 
 
 def checked_limits(what: str, low: float, high: float, start: float, play: bool = False) -> None:

@@ -44,6 +44,8 @@ class Controller:
     states: NDArray                 # at the start
     parameters: NDArray
     _refuse: Callable[[NDArray], None] | None = None    # of a ready law
+    # of a continuous one whose states are those of its law: see `Flow`
+    at_rest: Callable[[NDArray], NDArray] | None = None
 
     def check_parameters(self) -> None:
         """Refuse parameters that the builder of a ready law refuses.

@@ -123,10 +123,11 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
         _check_law(where, law, ins, outs, parameters)
         if law.flow is None:
             raise InputError(f"{where}: {law.title} is a law in discrete time: give period=")
-        function, start, parameters, own = law.flow
+        function, start, parameters, own, at_rest = law.flow
+        at_rest = None if states.size else at_rest
         states, derivatives = _own_states(where, states, start), derivatives or own
     else:
-        function = law
+        function, at_rest = law, None
     if isinstance(law, FunctionType) and law.__code__.co_argcount == len(CONTROL):
         raise InputError(f"{where} has no period, and its function is that of a sampled one, "
                          f"({', '.join(CONTROL)}): give period=, or for a continuous controller a "
@@ -136,7 +137,7 @@ def _continuous(model: Mechanism, name: str, law: Law | Callable[..., None], ins
     compiled = compiled_law(function, name, sizes)
     by = None if derivatives is None else compiled_derivatives(derivatives, name, sizes)
     made = Controller(name, compiled, ins, outs, 0.0, 0, states, parameters,
-                      law.refuse if isinstance(law, Law) else None)
+                      law.refuse if isinstance(law, Law) else None, at_rest)
     model.loads.append(law_element(model, made, by, corners))
     model.controllers[name] = made
     return made

@@ -75,8 +75,10 @@ def slide_of(model: Mechanism, of: Joint | Node | str, axis: ArrayLike | None,
                              "of the node")
         return a, b, a, np.column_stack(along(model, axis, what, a))
     if joint.kind not in SLIDES:
+        remedy = ("prescribe its way by drive_way" if joint.kind == "path" else
+                  f"give a {' or '.join(SLIDES)} joint")
         raise InputError(f"{what}: {joint.name!r} is a {joint.kind}, which does not slide along "
-                         f"one axis: give a {' or '.join(SLIDES)} joint")
+                         f"one axis: {remedy}")
     return joint.node, joint.to, joint.own_axes.carrier, joint.own_axes.columns
 
 

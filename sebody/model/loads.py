@@ -10,7 +10,14 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import offered, unknown
 from sebody.contract.names import body_load_kind
-from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
+from sebody.model.arguments import (
+    chosen_name,
+    dof_block,
+    known,
+    named_axis,
+    rotation_vector,
+    vector,
+)
 from sebody.model.frames import FRAMES
 from sebody.model.functions import compiled_force
 from sebody.model.histories import clock, time_function
@@ -27,7 +34,7 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     Parameters
     ----------
     node : Node or str
-    direction : (3,), planar (2,)
+    direction : (3,), planar (2,), or the name of an axis such as "-z"
         Global axes; its length counts [force].
     amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
         Over time; 1 by default.
@@ -42,7 +49,8 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
     """
     node = known(model, node)
     on = dof_block(node, "position")
-    constants = {"d": vector(model, direction, f"force on {on.name}")}
+    what = f"force on {on.name}"
+    constants = {"d": vector(model, named_axis(direction, model.dimension, what), what)}
     attachments = positions(node)
     if inputs.flag(follower, "follower"):
         dof_block(node, "rotation")
@@ -61,7 +69,7 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     Parameters
     ----------
     node : Node or str
-    direction : (3,), in a plane a number
+    direction : (3,), or the name of an axis such as "-z"; in a plane a number
         Global axes, by the right hand; its length counts [force length].
     amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
         Over time; 1 by default.
@@ -76,7 +84,10 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
     """
     node = known(model, node)
     on = dof_block(node, "rotation")
-    constants = {"d": rotation_vector(model, direction, f"torque on {on.name}")}
+    what = f"torque on {on.name}"
+    if not model.planar:
+        direction = named_axis(direction, 3, what)
+    constants = {"d": rotation_vector(model, direction, what)}
     follower = inputs.flag(follower, "follower")
     kind = model.kind_of("follower_" * (follower and not model.planar) + "torque")
     course = time_function(amplitude)

@@ -6,7 +6,9 @@ DOF block has no unknowns.
 """
 
 from html import escape
+from typing import TYPE_CHECKING, NoReturn
 
+from sebody.basics.spelling import alike
 from sebody.model import (
     actuators,
     beams,
@@ -32,6 +34,19 @@ from sebody.model.atomic import atomic_builders
 from sebody.model.mechanism import Mechanism
 from sebody.model.summary import described, model_tables, summary
 
+# names of other programs, and what does the same here
+ELSEWHERE = {
+    "hinge": "revolute", "pin": "revolute", "ball": "spherical", "ball_joint": "spherical",
+    "fixed": "fix, or weld of two nodes", "ground": "fix", "clamp": "fix",
+    "motor": "actuator, or drive_angle for a prescribed motion", "motion": "move or drive_angle",
+    "damper": "spring with damping=", "mass": "point_mass or rigid_body",
+    "body": "rigid_body or superelement", "add_body": "rigid_body or superelement",
+    "flexible_body": "superelement or beam", "translational": "prismatic", "slide": "prismatic",
+    "load": "force or torque", "moment": "torque", "pid": "controller",
+    "marker": "node", "constraint": "weld, revolute and other joints",
+    "run": "simulate(model, h, t_end), a function of the package",
+    "simulate": "simulate(model, h, t_end), a function of the package"}
+
 
 @atomic_builders
 class Model(Mechanism):
@@ -47,6 +62,11 @@ class Model(Mechanism):
         Units of all numbers, such as ``mm t N s``, for legends, axes and tables; those of its
         bodies by default.
     """
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> NoReturn:
+            """Say what does here what a method of this name does in other programs."""
+            raise AttributeError(f"a Model has no {name!r}" + _instead(name))
 
     def summary(self) -> str:
         """The model in words and tables, to be checked before a run.
@@ -118,3 +138,12 @@ class Model(Mechanism):
     stop = contacts.stop
     gear = gears.gear
     contact = contacts.contact
+
+
+def _instead(name: str) -> str:
+    """What to call in place of a name that a model does not have."""
+    if name in ELSEWHERE:
+        return f": that is {ELSEWHERE[name]}"
+    near = [] if name.startswith("_") else alike(name, [own for own in dir(Model)
+                                                        if not own.startswith("_")])
+    return f": did you mean {' or '.join(near)}?" if near else ""

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.model.arguments import chosen_name, known
+from sebody.model.arguments import chosen_name, known, warn_of_degrees
 from sebody.model.bearing_tables import BearingTable
 from sebody.model.hinges import about, check_axes
 from sebody.model.mechanism import Mechanism
@@ -78,6 +78,7 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
     what = "torsion spring"
     a, b, vectors = about(model, node, axis, to, what)
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
+    warn_of_degrees(f"torsion spring at {a.name!r}", rest=rest)
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
     constants: dict[str, float | NDArray] = {"k": stiffness, "k3": cubic, "c": damping,
                                              "rest": rest}

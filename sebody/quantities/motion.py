@@ -7,6 +7,11 @@ from sebody.quantities.algebra import back, dot, minus, spun, times
 from sebody.quantities.expressions import Number, angle
 from sebody.quantities.numbers import Numbers, Parts
 
+# names of displacements and rates by the kind of a joint; each is of the same kind as the others
+OF_WAYS = ("angle", "displacement", "way"), ("rate", "speed")
+OF_JOINTS = ((TURNS, ("angle", "rate")), (SLIDES, ("displacement", "speed")),
+             (("path",), ("way", "rate")))
+
 
 def joints(of: Parts) -> dict[str, Joint]:
     """Joints, and drives by equations."""
@@ -131,6 +136,10 @@ def speed(of: Numbers, name: str) -> Number:
 def _of_kind(of: Numbers, name: str, kinds: tuple[str, ...], what: str, does: str) -> Joint:
     joint = joints(of)[name]
     if joint.kind not in kinds:
+        own = [other for of_kind, names in OF_JOINTS if joint.kind in of_kind
+               for other, same in zip(names, OF_WAYS, strict=True) if what in same]
         raise InputError(f"joint {name!r} is a {joint.kind}, which does not {does} about or along "
-                         f"one axis and has no {what}; that is what {', '.join(kinds)} joints do")
+                         f"one axis and has no {what}; " + (
+                             f"ask for {name}.{own[0]}" if own else
+                             f"that is what {', '.join(kinds)} joints do"))
     return joint

@@ -66,6 +66,12 @@ class Result(Recording):
                                   to the other node, tension is positive), turning with `node`, of a
                                   slider with `to`; global axes at the start if it has no axis
     ``<joint>.multipliers``       (n, m) of its equations
+    ``<joint>.angle, .rate``      (n,) of a joint that turns about one axis, from the start
+    ``<joint>.displacement``      (n,) of a joint that slides, and ``<joint>.speed``, its rate; on a
+                                  path ``<joint>.way`` and ``<joint>.rate``
+    ``<contact>.normal_force``    (n,) of contacts, stops and friction; also gap, sticks,
+                                  dissipation
+    ``<sensor>.value``            (n,) of sensors, signals and actuators
     ``<drive>.torque, .thrust``   (n,) of a drive of an angle or a displacement: positive where it
                                   drives the motion onwards. Times the rate of the motion it is the
                                   power

@@ -39,7 +39,7 @@ from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, fitting
-from sebody.runs.start_remarks import start_remarks
+from sebody.runs.start_remarks import kicks, start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.teeth import Gears, teeth_remarks
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
@@ -161,6 +161,9 @@ class Simulation:
         self.sampling.check(self.h, self.tolerance is None)
         if self.sampling.begin():
             self._accelerate()
+        if self.begun is None:
+            for key, message in kicks(model, self.sampling.read).items():
+                self.watch.say(key, message)
 
     def _judge_teeth(self) -> None:
         """Say once what teeth do to vibrations whose stiffness was not given."""

@@ -90,9 +90,10 @@ RETURN = "return Scene(name, summary, model, h, t_end), from sebody.scenes.scene
 
 @pytest.mark.parametrize("text, message", [
     ("x = 1\ny = (\n", "wrong.py, line 2: '(' was never closed"),
-    ("import no_such_module\n", "wrong.py, line 1: ModuleNotFoundError: No module named"),
-    ("import sys\n\nsys.exit(0)\n", "wrong.py, line 3: SystemExit: 0"),
+    ("import no_such_module\nbuild = 1\n", "wrong.py, line 1: ModuleNotFoundError: No module"),
+    ("import sys\n\nsys.exit(0)\nbuild = 1\n", "wrong.py, line 3: SystemExit: 0"),
     ("x = 1\n", "scene file wrong.py has no function build: write 'def build() -> Scene' as in "),
+    ("raise ValueError('it ran')\n", "scene file wrong.py has no function build: "),
     ("build = 1\n", "scene file wrong.py has no function build: "),
     ("def build():\n    pass\n", f"what build of wrong.py returned is None: {RETURN}"),
     (MODEL + "return Model()\n", "what build of wrong.py returned is"),

@@ -1,12 +1,18 @@
 """Words of other programs and of daily use in the arguments of builders: taken, or set right."""
 
+import copy
+import pickle
+import warnings
+
 import numpy as np
 import pytest
 
 from sebody import InputError, LimitWarning, Model, simulate
-from sebody.fem import Section, circle, i_profile, rectangle, tube
+from sebody.fem import Section, circle, i_profile, rectangle, straight_beam, tube
+from sebody.reduction import craig_bampton
 
 PLACE = (0.3, -0.2, 0.5)
+STEEL = 2.1e11, 0.3, 7850.0
 
 
 def block(planar=False, place=PLACE):
@@ -116,3 +122,82 @@ def test_a_result_says_what_is_meant():
     nothing = "nothing"
     with pytest.raises(AttributeError, match="has no attribute 'nothing'$"):
         getattr(result, nothing)
+
+
+@pytest.mark.parametrize("name, words", [
+    ("hinge", "that is revolute"), ("ball", "that is spherical"), ("motor", "that is actuator"),
+    ("damper", "spring with damping="), ("revolut", "did you mean revolute"), ("qqq", "no 'qqq'")])
+def test_a_model_says_what_other_programs_names_are_here(name, words):
+    """Also copies and pickles of models, which ask for names that none has."""
+    with pytest.raises(AttributeError, match=words):
+        getattr(Model(), name)
+    assert not hasattr(copy.deepcopy(pickle.loads(pickle.dumps(Model()))), name)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_forces_act_along_named_axes(planar):
+    """As along vectors; a planar torque is a number."""
+    model, n = block(planar), 2 if planar else 3
+    assert np.array_equal(model.force("a", "-y").constants["d"], -np.eye(n)[1])
+    if not planar:
+        assert np.array_equal(model.torque("a", "z").constants["d"], (0.0, 0.0, 1.0))
+    with pytest.raises(InputError, match="x or y.*, with a minus or not"):
+        model.force("a", "up")
+
+
+def test_what_looks_like_another_number_is_warned_of():
+    """The inner radius of a tube for its wall; degrees for a rest; solid rods are no tubes."""
+    with pytest.warns(LimitWarning, match="leaves a hole of radius 0.003"):
+        tube(0.03, 0.027, *STEEL)
+    model = block()
+    model.revolute("a", "z", name="hinge")
+    with pytest.warns(LimitWarning, match="rest is 30, .* 30 degrees are 0.523599"):
+        model.torsion_spring("hinge", 10.0, rest=30.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        tube(0.03, 0.03, *STEEL)
+        tube(0.03, 0.02, *STEEL)
+        model.torsion_spring("hinge", 10.0, rest=-3.1)
+
+
+def test_a_joint_between_fixed_nodes_is_told():
+    """Not where one of the nodes is free."""
+    def said(fix):
+        model = block()
+        model.rigid_body("other", "b", 1.0, (1.0, 1.0, 1.0))
+        model.revolute("a", "z", name="hinge", explicit=True)
+        fix(model)
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            simulate(model, 0.01, 0.01)
+        return [str(one.message) for one in seen if "cannot move" in str(one.message)]
+
+    assert said(lambda model: None) == []
+    assert said(lambda model: model.fix("b", "rotation")) == []
+    message, = said(lambda model: model.fix("a"))
+    assert message.startswith("joint 'hinge' cannot move: its nodes are fixed")
+
+
+def test_nodes_in_another_order_are_put_right():
+    """The message has the order that fits, which does; other places are those of before."""
+    model = Model()
+    first, last = model.node("first", (1.0, 2.0, 0.5)), model.node("last", (3.0, 2.0, 0.5))
+    beam = craig_bampton(straight_beam((0, 0, 0), (2, 0, 0), circle(0.1, *STEEL), 4),
+                         [(0, "full"), (4, "full")], 1)
+    with pytest.raises(InputError, match="give them in the order first, last"):
+        model.superelement("bar", beam, (last, first))
+    model.superelement("bar", beam, (first, last))
+
+
+def test_other_joints_name_their_ways_otherwise():
+    """A rate asked of what slides, and a speed of what turns."""
+    model = block()
+    model.rigid_body("other", "b", 1.0, (1.0, 1.0, 1.0))
+    model.revolute("a", "z", name="turns")
+    model.prismatic("b", axis="x", name="slides")
+    result = simulate(model, 0.01, 0.01)
+    for asked, own in (("turns.speed", "turns.rate"), ("turns.displacement", "turns.angle"),
+                       ("slides.rate", "slides.speed"), ("slides.angle", "slides.displacement")):
+        with pytest.raises(InputError, match=f"ask for {own}"):
+            result[asked]
+        assert result[own].shape == (2,)

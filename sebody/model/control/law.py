@@ -24,12 +24,15 @@ class Flow(NamedTuple):
     parameters : (m,)
     derivatives : callable, optional
         ``derivatives(t, y, x, derivatives, parameters)``.
+    at_rest : callable, optional
+        Of inputs y, states from which those of rates do not move while the inputs do not.
     """
 
     function: Callable[..., None]
     states: NDArray
     parameters: NDArray
     derivatives: Callable[..., None] | None = None
+    at_rest: Callable[[NDArray], NDArray] | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -22,8 +22,9 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
     """``u = kp e + ki I + kd D`` with ``e = r - y``, the integral I of e, the rate D of -y.
 
     With the period T they are ``I += T e`` and ``D = (D + N (y_last - y)) / (1 + N T)``;
-    continuous ones ``I' = e`` and ``D = z' = N (-y - z)`` with states I, z, where z is -y at the
-    start if the rate is none (``states=(0, -y)``). The integral rests while the output is cut off
+    continuous ones ``I' = e`` and ``D = z' = N (-y - z)`` with states I, z. Where y is not zero at
+    the start, give ``states=(0, -y)``: with z = 0 the rate is that of a jump from zero to y, and u
+    begins with ``-kd N y``; runs warn of that. The integral rests while the output is cut off
     and the error would drive it further (anti-windup).
 
     Parameters
@@ -48,7 +49,12 @@ def pid(kp: float, ki: float = 0.0, kd: float = 0.0, filter: float = 100.0,
                inputs.number(reference, "pid: reference"), *_limits(limit, "pid: limit")]
     return Law("pid", _pid, (1, 2), 1, np.zeros(4),
                lambda period: np.array([period, *numbers]),
-               Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives), _check_pid)
+               Flow(_pid_flow, np.zeros(2), np.array(numbers), _pid_derivatives,
+                    _pid_at_rest if numbers[2] else None), _check_pid)
+
+
+def _pid_at_rest(y: NDArray) -> NDArray:
+    return np.array([0.0, -y[0]])
 
 
 def _check_pid(parameters: NDArray) -> None:

@@ -1,5 +1,7 @@
 """Ready laws in continuous time, by transfer functions, SciPy's filters and integration."""
 
+import warnings
+
 import numpy as np
 import pytest
 from controlled_rotor import rotor
@@ -7,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.signal import butter, freqs
 
-from sebody import Simulation, simulate
+from sebody import Model, Simulation, simulate
 from sebody.analysis import state_space
 from sebody.control import linear, low_pass, pid, state_feedback
 
@@ -57,7 +59,7 @@ def _blocks(whole):
 def test_derivatives_of_pid(inputs, y, integral):
     """Given in closed form, against differences, which are exact as the law is linear."""
     law = pid(3.0, 0.7, 0.2, filter=20.0, reference=0.4, limit=2.0)
-    flow, _, parameters, derivatives = law.flow
+    flow, _, parameters, derivatives, _ = law.flow
     point = np.array([y, 0.3, integral, 0.1])[[0, 2, 3] if inputs == 1 else [0, 1, 2, 3]]
 
     def found(z):
@@ -120,3 +122,26 @@ def test_the_offset_of_a_feedback_is_its_output_at_the_reference():
     assert_allclose(u, [0.7, -1.1])
     law.function(0.0, np.array([0.5, 0.4]), law.states, u, parameters)
     assert_allclose(u, [0.7 - 2.0 * 0.3 + 0.3 * 0.5, -1.1 - 0.4 * 0.3 - 1.5 * 0.5])
+
+
+@pytest.mark.parametrize("states, place, kicks", [
+    ((), 10.0, True), ((0.0, -10.0), 10.0, False), ((0.0, 0.0), 10.0, False), ((), 0.0, False)])
+def test_a_rate_that_begins_with_a_kick_is_warned_of(states, place, kicks):
+    """Unless its input is zero or states are given; with those of the message there is none."""
+    model = Model(units="m kg s N")
+    model.node("cart", (place, 0, 0))
+    model.rigid_body("body", "cart", 100.0, (1.0, 1.0, 1.0))
+    model.prismatic("cart", axis="x", name="way")
+    model.actuator("motor", joint="way")
+    model.controller("law", pid(100.0, kd=300.0, reference=place + 2.0), ["cart.position.x"],
+                     ["motor"], states=states)
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        first = simulate(model, 0.01, 0.05)["motor.value"][0]
+    said = [str(one.message) for one in seen if "kick" in str(one.message)
+            or "as if its input" in str(one.message)]
+    assert bool(said) == kicks
+    if kicks:
+        assert "give states=(0, -10)" in said[0] and first < -1e5
+    elif states != (0.0, 0.0):
+        assert first == pytest.approx(200.0)
