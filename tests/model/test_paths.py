@@ -14,62 +14,22 @@ from sebody.model.profiles import rest_to_rest
 from sebody.model.variants import divide, keep_modes, planar, rigid
 from sebody.reduction import craig_bampton
 from sebody.results import Result
+from sebody.verify.outside import moving_mass
 
 G = 9.81
 TURN = Rotation.from_rotvec((0.5, -0.8, 0.4)).as_matrix()
 SHIFT = np.array([3.0, -1.0, 2.0])
-
-
-def thin():
-    """A section with rho A = E I = 1, without shear and rotary inertia to speak of."""
-    height = 1e-3
-    return rectangle(height, 1.0, youngs_modulus=12 / height**3, poisson_ratio=0.0,
-                     density=1 / height)
-
-
-MASS, SPEED, SMALL = 0.5, 0.5 * np.pi, 1e-4     # weights so small that beams stay straight
-
-
-def bridge(bodies=1, modes=8):
-    """A mass that moves along a beam between two hinges, at half the critical speed."""
-    model = Model(planar=True)
-    ends = model.node("a", (0.0, 0.0)), model.node("b", (1.0, 0.0))
-    model.beam("beam", ends, thin(), elements=24, bodies=bodies, modes=modes, stiffening=False)
-    for end in ends:
-        model.fix(end, "position")
-    car = model.node("car", (0.0, 0.0), "translation")
-    model.point_mass("mass", car, MASS)
-    model.force(car, (0.0, -1.0), MASS * SMALL)
-    model.path("deck", on="beam")
-    model.path_joint(car, "deck", name="runs")
-    model.drive_way("runs", (lambda t: 0.5 * np.pi * t, lambda t: 0.5 * np.pi, lambda t: 0.0),
-                    name="engine")
-    return model
-
-
-def deflections(times, count=16):
-    """Under a moving mass, by sine modes of the beam."""
-    k = np.arange(1, count + 1) * np.pi
-
-    def rate(t, z):
-        s = SPEED * t
-        row, slope, bend = np.sin(k * s), k * np.cos(k * s), -k * k * np.sin(k * s)
-        matrix = np.eye(count) / 2 + MASS * np.outer(row, row)
-        force = row * MASS - k**4 / 2 * z[:count] - MASS * row * (
-            2 * SPEED * slope @ z[count:] + SPEED**2 * bend @ z[:count])
-        return np.r_[z[count:], np.linalg.solve(matrix, force)]
-    found = solve_ivp(rate, (0, times[-1]), np.zeros(2 * count), "DOP853", times, rtol=1e-7,
-                      atol=1e-9).y[:count].T
-    return np.sum(found * np.sin(np.outer(SPEED * times, k)), axis=1)
+SMALL = moving_mass.SMALL      # of weights: beams stay straight
+MASS, SPEED = moving_mass.MASS, moving_mass.SPEED
 
 
 @pytest.mark.filterwarnings("ignore")
 def test_a_mass_moves_along_a_bridge():
     """Case of Frýba: convective terms included; by one body and by several that are welded."""
     times = np.array([0.25, 0.5, 0.75, 0.95]) / SPEED
-    exact = deflections(times)
+    exact, _ = moving_mass.deflections(times, 16)
     for bodies, modes, error in ((1, 8, 3e-4), (3, 4, 6e-4)):
-        result = simulate(bridge(bodies, modes), times[-1] / 760, times[-1])
+        result = simulate(moving_mass.bridge(bodies, modes), times[-1] / 760, times[-1])
         place = -result["car.position"][:, 1] / SMALL
         under = np.interp(times, result.t, place)
         assert under == pytest.approx(exact, abs=error * 0.0196)
@@ -294,7 +254,7 @@ def test_starts():
 @pytest.mark.filterwarnings("ignore")
 def test_labels_and_lines_between_nodes_are_the_same_path():
     """Along the axis of a beam whose FE nodes have labels, forth and back."""
-    fe = straight_beam((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), thin(), 6)
+    fe = straight_beam((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), moving_mass.thin(), 6)
     body = craig_bampton(fe, {0: "full", 6: "full"}, 2)
     model = Model()
     model.node("a", (0.0, 0.0, 0.0))
@@ -365,8 +325,8 @@ def loaded(bodies=1, flat=True, turned=None, **force):
     ends = [model.node(name, x * turned[:2, 0] if flat else x * turned[:, 0] + SHIFT)
             for name, x in (("a", 0.0), ("b", 1.0))]
     up = {} if flat else {"up": turned[:, 1]}
-    model.beam("beam", ends, thin(), elements=24, bodies=bodies, modes=10 if flat else 20,
-               stiffening=False, **up)
+    model.beam("beam", ends, moving_mass.thin(), elements=24, bodies=bodies,
+               modes=10 if flat else 20, stiffening=False, **up)
     if flat:
         for end in ends:
             model.fix(end, "position")
@@ -421,7 +381,8 @@ def test_a_mass_comes_from_the_ground_and_crosses_two_spans(blend):
     model = Model(planar=True)
     for k in range(2):
         ends = [model.node(f"{name} {k}", (k + x, 0.0)) for name, x in (("a", 0.0), ("b", 1.0))]
-        model.beam(f"span {k}", ends, thin(), elements=24, bodies=1, modes=8, stiffening=False)
+        model.beam(f"span {k}", ends, moving_mass.thin(), elements=24, bodies=1, modes=8,
+                   stiffening=False)
         for end in ends:
             model.fix(end, "position")
     car = model.node("car", (-0.2, 0.0), "translation")
@@ -436,7 +397,7 @@ def test_a_mass_comes_from_the_ground_and_crosses_two_spans(blend):
     outside = (way < -blend) | (way > 2 + blend)
     assert outside.sum() > 100
     assert np.abs(place[outside]).max() < 1e-6
-    exact = deflections(np.array([0.25, 0.5, 0.75]) / SPEED)
+    exact, _ = moving_mass.deflections(np.array([0.25, 0.5, 0.75]) / SPEED, 16)
     for span in range(2):       # the second one rests when the mass comes
         under = np.interp(np.array([0.25, 0.5, 0.75]) + span, way, place)
         assert under == pytest.approx(exact, abs=(3e-4 if blend == 0 else 5e-3) * 0.0196)

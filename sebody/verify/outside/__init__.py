@@ -27,7 +27,7 @@ CASES = (
     "whirling-shaft", "jacket",
     # motion of flexible bodies
     "composite-beam-dynamics", "slewing-beam", "misaligned-four-bar", "lateral-buckling",
-    "rotating-shaft", "spin-up-rounded",
+    "rotating-shaft", "spin-up-rounded", "moving-mass",
 )
 
 
