@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from functools import wraps
+from inspect import Parameter, signature
 from typing import ParamSpec, TypeVar
 
 from sebody.basics.errors import InputError
@@ -26,8 +27,39 @@ def without_symbols(make: Callable[Arguments, Made], what: str = "") -> Callable
         if symbols := [symbol for symbol in given if symbol in SYMBOLS]:
             raise InputError(f"{what or make.__name__} has no {'=, '.join(symbols)}=: give "
                              + ", ".join(SYMBOLS[symbol] for symbol in symbols))
-        return make(*args, **given)
+        try:
+            return make(*args, **given)
+        except TypeError:
+            refuse_arguments(make, given)
+            raise
     return named
+
+
+def naming_arguments(function: Callable[Arguments, Made]) -> Callable[Arguments, Made]:
+    """A function that lists its arguments where one that it does not have is given by name."""
+    @wraps(function)
+    def named(*args: Arguments.args, **given: Arguments.kwargs) -> Made:
+        try:
+            return function(*args, **given)
+        except TypeError:
+            refuse_arguments(function, given)
+            raise
+    return named
+
+
+def refuse_arguments(function: Callable, given: Iterable[str], first: int = 0) -> None:
+    """Refuse arguments by names that a function does not have; its own from `first` on are listed.
+
+    Raises
+    ------
+    TypeError
+    """
+    own = list(signature(function).parameters.values())
+    names = [one.name for one in own[first:]]
+    odd = [name for name in given if name not in names]
+    if odd and not any(one.kind is Parameter.VAR_KEYWORD for one in own):
+        raise TypeError(f"{function.__name__} has no {'=, '.join(odd)}=: its arguments are "
+                        f"{', '.join(names)}") from None
 
 
 def unknown(what: str, name: object, known: Iterable[str], have: str = "there are",

@@ -6,6 +6,8 @@ from functools import wraps
 from inspect import isfunction
 from typing import ParamSpec, TypeVar
 
+from sebody.basics.spelling import refuse_arguments
+
 Arguments = ParamSpec("Arguments")
 Built = TypeVar("Built")
 Class = TypeVar("Class", bound=type)
@@ -35,7 +37,9 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
                 if isinstance(value, dict | list | set)}
         try:
             return build(*args, **named)
-        except BaseException:
+        except BaseException as error:
             vars(model).update(kept)
+            if isinstance(error, TypeError):
+                refuse_arguments(build, named, first=1)
             raise
     return built

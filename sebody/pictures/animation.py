@@ -5,6 +5,7 @@ from pathlib import Path
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target, replacing
+from sebody.basics.spelling import naming_arguments
 from sebody.pictures import film
 from sebody.pictures.drawing import overview
 from sebody.pictures.notebook import Page, ShownFile
@@ -17,6 +18,7 @@ COLOURS = "body", "displacement", "von_mises"
 LONGEST = 30.0          # seconds of a film without a speed
 
 
+@naming_arguments
 def animate(result: Result, output: str | Path | None = None, *quantities: str, title: str = "",
             speed: float | None = None, colour: str | None = None,
             reference: str | None = None) -> ShownFile | Page:

@@ -10,6 +10,7 @@ import numpy as np
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target
+from sebody.basics.spelling import naming_arguments
 from sebody.pictures.curves import Panel, panels, values
 from sebody.pictures.notebook import shown
 from sebody.pictures.palette import CURVES
@@ -34,6 +35,7 @@ LEGEND = 10             # most curves that are named
 SIZE = 4.9, 3.0         # of a panel [inch]
 
 
+@naming_arguments
 def plot(results: Result | Mapping[str, Result] | Sequence[Result], *quantities: str,
          output: str | Path | None = None, spectrum: bool = False) -> "Figure":
     """Draw histories, phase plots or spectra of any quantities, of several results to compare.

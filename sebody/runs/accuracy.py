@@ -12,6 +12,7 @@ from sebody.assembly.numbering import placed, rotational
 from sebody.basics import inputs
 from sebody.basics.errors import Interrupted, LimitWarning, SimulationError
 from sebody.basics.progress import showing
+from sebody.basics.spelling import naming_arguments
 from sebody.basics.warned import warn
 from sebody.engine.state import Scheme
 from sebody.model.extent import extent
@@ -36,6 +37,7 @@ HOPELESS = 0.5      # share of the last three differences that the next one must
 RESOLVED = 30.0     # divisor of planned steps up to which runs may be too coarse to converge
 
 
+@naming_arguments
 def simulate_within(model: Model, h: float, t_end: float, tolerance: Tolerance | None = None,
                     scheme: Scheme | None = None,
                     progress: Callable[[float], None] | bool | None = None,

@@ -15,6 +15,7 @@ from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
 from sebody.basics.progress import showing
+from sebody.basics.spelling import naming_arguments
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
@@ -371,6 +372,7 @@ class Standstill(Simulation):
     gives_loads_to_steps = False
 
 
+@naming_arguments
 def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
              output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
              tolerance: Tolerance | None = None, start: Result | None = None,

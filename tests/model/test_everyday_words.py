@@ -201,3 +201,17 @@ def test_other_joints_name_their_ways_otherwise():
         with pytest.raises(InputError, match=f"ask for {own}"):
             result[asked]
         assert result[own].shape == (2,)
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda m: simulate(m, dt=0.01, t_end=1.0), "simulate has no dt=: its arguments are model, h,"),
+    (lambda m: m.spring("a", "b", k=3.0, c=1.0), "spring has no k=, c=: its arguments are node, "),
+    (lambda m: rectangle(b=1.0, h=2.0), "rectangle has no b=, h=: its arguments are height")])
+def test_arguments_by_other_names_are_told(call, message):
+    """The model is left as it was; what misses an argument is told by Python's own words."""
+    model = block()
+    with pytest.raises(TypeError, match=message):
+        call(model)
+    assert not model.loads
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'to'"):
+        model.spring("a", stiffness=3.0)
