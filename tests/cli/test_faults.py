@@ -91,8 +91,8 @@ def test_a_failing_run_saves_its_state(tmp_path, capsys, monkeypatch):
     out, err = capsys.readouterr()
     assert out.endswith(f"state                {state}\n")
     assert main(["run", "struck", "--t-end", "1", "--resume", str(state)]) == 1
-    assert all(text.startswith("error: stopped at t = 0.1003") for text in
-               (err, capsys.readouterr().err))      # it stops at the same place, or a step later
+    assert all(text.startswith("error: stopped at t = 0.100") for text in
+               (err, capsys.readouterr().err))      # it stops at the same place, or steps later
 
 
 def test_warnings_are_lines_without_a_place_in_the_program(capsys, monkeypatch):

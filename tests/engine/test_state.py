@@ -62,10 +62,10 @@ def test_coefficients_are_set_by_name():
 def test_every_reason_has_its_own_number_and_text():
     """Answers of kernels are reasons: the numbers that follow must not be theirs."""
     named = {name: getattr(codes, name) for name in (
-        "NO_REASON", "HALF_TURN", "NO_FRAME", "NOT_FINITE", "SLOW", "INACCURATE", "GAP",
+        "NO_REASON", "HALF_TURN", "NO_FRAME", "OFF_PATH", "NOT_FINITE", "SLOW", "INACCURATE", "GAP",
         "NO_START", "BAD_CONTROL", "CONTACT", "GROWS")}
     assert len(set(named.values())) == len(named)
-    assert (named["NO_REASON"], named["HALF_TURN"], named["NO_FRAME"]) == (
-        layout.OK, layout.HALF_TURN, layout.NO_FRAME)
+    assert [named[one] for one in ("NO_REASON", "HALF_TURN", "NO_FRAME", "OFF_PATH")] == [
+        layout.OK, layout.HALF_TURN, layout.NO_FRAME, layout.OFF_PATH]
     assert set(REASONS) == set(named.values()) - {codes.NO_REASON}
     assert len(set(REASONS.values())) == len(REASONS)

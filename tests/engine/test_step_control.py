@@ -89,7 +89,7 @@ def test_index_3_does_not_allow_changing_steps(monkeypatch):
     scheme = generalized_alpha(tolerance=1e-12, index=2)
     monkeypatch.setitem(globals(), "STRICT", scheme)
     stable = errors(explicit, 0.3, (400,), attitude)[0]
-    monkeypatch.setattr(simulation, "fitting", lambda given, constrained, variable: given)
+    monkeypatch.setattr(simulation, "fitting", lambda given, *_: given)
     monkeypatch.setitem(globals(), "STRICT", scheme._replace(stabilized=False))
     assert errors(explicit, 0.3, (400,), attitude)[0] > 100 * stable
 

@@ -56,7 +56,7 @@ def test_the_legend_of_a_film(arm):
 
     drawn = scenery(arm, 201, stressed=True)
     bodies, figure = film._Bodies(drawn, "von_mises"), Figure()
-    now = bodies.add_legend(figure)
+    now = bodies.add_legend(figure, 1.0, True)
     axes, = figure.axes
     largest = max((arm.field(name).envelope() for name in arm.model.bodies),
                   key=lambda one: one.largest)
