@@ -13,6 +13,7 @@ AXIS = TURN[:, 2]
 H, END = 2e-3, 0.4
 NUMBERS = {"coupler.stiffness": 1.0, "crank.mass": 1.0, "loop.parameters": [25, 8, 2, 60, 0.5]}
 OUTPUTS = {"c": final("c.position")}
+LEFT = 5e-13        # of a position near one, by Newton's iteration to 1e-13 over 200 steps
 
 
 def place(x, y):
@@ -61,6 +62,7 @@ def test_they_are_the_limit_of_differences():
             y = many.run({name: np.array(values)}, END, OUTPUTS, threads=1)["c"]
             differences = (8.0 * (y[2] - y[1]) - (y[3] - y[0])) / (12.0 * step)
             size = np.abs(differences).max()
-            # a stiff coupler hardly moves the point: what is rounding there shows
-            assert np.abs(found[:, column] - differences).max() < 1e-6 * size
+            # a stiff coupler hardly moves the point: what Newton's iteration leaves there shows
+            left = 1.5 / step * LEFT
+            assert np.abs(found[:, column] - differences).max() < 1e-6 * size + left
             column += 1

@@ -193,7 +193,8 @@ def test_what_jumps_without_mass_is_told_what_helps(build, tolerance, other):
         simulate(build(), STEP, 0.02, tolerance=tolerance)
     model = build()
     model.rigid_body("lump", "b", 1e-2, 1e-5 * np.eye(3))
-    ends = [simulate(one, STEP, 0.1, tolerance=tolerance)["b.position"]
+    # four times finer, as contacts are too hard for the step above
+    ends = [simulate(one, STEP / 4, 0.1, tolerance=tolerance)["b.position"]
             for one in (model, build("rubin"))]
     moved = np.abs(ends[0] - ends[0][0]).max()
     # they bounce or vibrate: a mass of 1 % of the bar changes that by some percent
