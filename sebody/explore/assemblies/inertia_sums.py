@@ -15,13 +15,15 @@ from sebody.model.parts import Element
 from sebody.reduction.integrals import MassIntegrals
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.rigid_motions import rigid_motions
+from sebody.reduction.stiffening import Stiffening
 
 SUMMED = "c0", "S1", "J0", "g", "h", "K", "J2", "Mbar"
 
 
 def summed_invariants(placed: Iterable[Placed], rigid: Iterable[Element], motion: Motion,
                       places: dict[str, NDArray], mass: NDArray, coordinates: NDArray,
-                      keeps: tuple[str, ...]) -> InertiaInvariants | None:
+                      keeps: tuple[str, ...], stiffening: Stiffening | None = None
+                      ) -> InertiaInvariants | None:
     """Integrals of all bodies, rigid ones and point masses, about the mean of the interfaces.
 
     Parameters
@@ -34,36 +36,40 @@ def summed_invariants(placed: Iterable[Placed], rigid: Iterable[Element], motion
         Reduced mass of the assembly.
     coordinates : (n_interfaces, D)
     keeps : tuple of str
+    stiffening : Stiffening, optional
+        None where the assembly has none. The rows of `placed` and `motion` go on with load modes.
 
     Returns
     -------
     InertiaInvariants or None
         None if a body has none.
     """
-    origin = coordinates.mean(axis=0)
-    parts = []
+    origin, parts = coordinates.mean(axis=0), []
     for one in placed:
         if one.body.invariants is None:
             return None
-        parts.append(_of_body(one, origin))
-    parts += [_of_rigid(one, motion, places, origin, len(mass)) for one in rigid]
-    sums = {name: sum(part[name] for part in parts) for name in SUMMED}
+        parts.append(_of_body(one.body.invariants.about(origin - one.shift),
+                              np.vstack([one.rows, one.slaved])))
     n = len(mass)
-    R = rigid_motions(coordinates, keeps, n, origin)
-    return InertiaInvariants(
-        **_consistent(sums, mass, R, len(origin)), Q=np.zeros((0, n, n)), lam=np.zeros(0),
-        E=np.zeros((n, 0)), Ghat=np.zeros((0, n, n)), origin=origin)
+    N = n if stiffening is None else n + len(stiffening.Q)
+    parts += [of_rigid(one, motion, places, origin, N) for one in rigid]
+    sums = {name: sum(part[name] for part in parts) for name in SUMMED}
+    whole = np.array(sums["Mbar"])
+    whole[:n, :n] = mass
+    R = rigid_motions(coordinates, keeps, N, origin)
+    second = ({"Q": np.zeros((0, n, n)), "lam": np.zeros(0), "E": np.zeros((n, 0)),
+               "Ghat": np.zeros((0, n, n))} if stiffening is None else
+              {name: getattr(stiffening, name) for name in ("Q", "lam", "E", "Ghat")})
+    return InertiaInvariants(**_consistent(sums, whole, R, len(origin)), **second, origin=origin)
 
 
-def _of_body(one: Placed, origin: NDArray) -> dict[str, NDArray]:
+def _of_body(own: InertiaInvariants, D: NDArray) -> dict[str, NDArray]:
     """Those of one body, whose shapes are linear in its coordinates."""
-    assert one.body.invariants is not None
-    own, D = one.body.invariants.unstiffened.about(origin - one.shift), one.rows
     return {"c0": own.c0, "S1": own.S1 @ D, "J0": own.J0, "g": own.g @ D, "h": own.h @ D,
             "K": D.T @ own.K @ D, "J2": D.T @ own.J2 @ D, "Mbar": D.T @ own.Mbar @ D}
 
 
-def _of_rigid(one: Element, motion: Motion, places: dict[str, NDArray], origin: NDArray,
+def of_rigid(one: Element, motion: Motion, places: dict[str, NDArray], origin: NDArray,
               size: int) -> dict[str, NDArray]:
     """Those of a rigid body or a point mass: a point with rotary inertia."""
     node, mass = one.attachments[0].node, one.number("mass")

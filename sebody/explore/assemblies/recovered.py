@@ -26,8 +26,8 @@ class Inside(NamedTuple):
     numbers: str
 
 
-def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArray, NDArray]]
-              ) -> Inside:
+def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArray, NDArray]],
+              size: int) -> Inside:
     """The FE nodes of all bodies, body after body, then nodes of the model, in the state.
 
     Stresses are the changes from this state.
@@ -36,9 +36,11 @@ def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArr
     ----------
     nodes : mapping of str to (D,), (D, n) and (r, n)
         Places of nodes by name, their motion and rotation by the coordinates of the assembly.
+    size : int
+        How many of these there are before load modes.
     """
     known = [one for one in placed if one.body.recovery is not None]
-    parts = [_part(one) for one in known]
+    parts = [_part(one, size) for one in known]
     names = [one.name for one in known]
     if nodes:
         parts.append(_of_nodes(nodes))
@@ -67,7 +69,7 @@ def _of_nodes(nodes: Mapping[str, tuple[NDArray, NDArray, NDArray]]) -> Recovery
     return Recovery(shapes, places, _DOFS[places.shape[1]])
 
 
-def _part(one: Placed) -> Recovery:
+def _part(one: Placed, count: int) -> Recovery:
     """Shapes of one body in axes of space, by the coordinates of the assembly."""
     own = one.body.recovery
     assert own is not None
@@ -77,13 +79,13 @@ def _part(one: Placed) -> Recovery:
     y = one.y
     # those of second order have a part of first order in a deformed state
     followers = (np.zeros((0, n)) if one.body.invariants is None else one.body.invariants.Q @ y)
-    motion = np.vstack([one.rows, followers @ one.rows])[:own.shapes.shape[1]]
+    motion = np.vstack([one.rows, followers @ one.rows + one.slaved])[:own.shapes.shape[1]]
     shapes = own.all_dofs(motion.T).T
     moved = own.displacement(one.body.with_followers(y[None])[:, :own.shapes.shape[1]])[0]
     angles = width - D
     whole = block_diag(turn, *{0: [], 1: [np.eye(1)], 3: [turn]}[angles])
     stress = tuple(found for each in own.stress
-                   if (found := _turned(each, own, one, whole)) is not None)
+                   if (found := _turned(each, own, one.rows[:, :count], whole)) is not None)
     assert shapes.shape[0] == size * width
     return replace(own, shapes=shapes, coordinates=one.place(own.points) + moved, axes=None,
                    by=None, stress=stress, static=None, labels=None, nodes=None,
@@ -91,7 +93,7 @@ def _part(one: Placed) -> Recovery:
                    if D == 3 else own.outlines)
 
 
-def _turned(stress: SolidStress | BeamStress | StressModes, own: Recovery, one: Placed,
+def _turned(stress: SolidStress | BeamStress | StressModes, own: Recovery, rows: NDArray,
             whole: NDArray) -> SolidStress | BeamStress | StressModes | None:
     """Stresses of the displacements in axes of space; of solids along these."""
     still = own.axes is None
@@ -104,10 +106,10 @@ def _turned(stress: SolidStress | BeamStress | StressModes, own: Recovery, one: 
         return stress
     turn = np.eye(3) if own.axes is None else own.axes
     if isinstance(stress, StressModes):
-        modes, points, nodes = stress.modes @ own.in_fe_axes(one.rows.T).T, stress.points, (
+        modes, points, nodes = stress.modes @ own.in_fe_axes(rows.T).T, stress.points, (
             stress.nodes)
     else:
-        fields = own.shapes[:, :len(one.rows)] @ own.in_fe_axes(one.rows.T).T
+        fields = own.shapes[:, :len(rows)] @ own.in_fe_axes(rows.T).T
         moved = fields.reshape(len(own.coordinates), len(own.node_dofs), -1)
         found = stress.stress(moved)                    # (elements, points, 6, n)
         modes = found.reshape(-1, 6, found.shape[-1])

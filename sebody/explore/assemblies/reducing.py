@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.explore.assemblies.inertia_sums import summed_invariants
+from sebody.explore.assemblies.inside import PLANAR
 from sebody.explore.assemblies.kept_shapes import Kept, LooseInside, kept_shapes
 from sebody.explore.assemblies.placed_bodies import Motion, Placed, placed_bodies
 from sebody.explore.assemblies.recovered import recovered
 from sebody.explore.assemblies.states import AT_REST, Given, given_state
+from sebody.explore.assemblies.stiffened import KNOWN, Stiffened
 from sebody.explore.assemblies.wanted import Interfaces, interfaces_of
 from sebody.model.extent import extent
 from sebody.model.model import Model
@@ -29,7 +31,8 @@ from sebody.small_motion.shapes import Shapes
 SYMMETRIC = 1e-8        # part of a matrix that may be skew: rounding, or loads that turn
 BALANCED = 1e-7         # way by which loads inside move a node, over the size of the model, or rad
 UNBALANCED = 1e-4       # of the forces on the interfaces: a sum that is rounding of the equilibrium
-NO_STIFFENING = "reduced from an assembly; divide it where it spins fast or bears high loads"
+DEFINITE = 1e-12        # of the largest: strain energy that is none
+NO_STIFFENING = "divide the body where it spins fast or bears high loads"
 
 
 def reduce_model(run_or_model: Simulation | Result | Model,
@@ -104,13 +107,21 @@ def _reduced(given: Given, wanted: Interfaces, modes: int | Accuracy | None) -> 
     if preload is not None:
         stiffness = stiffness - preload.stiffness(points, wanted.keeps, len(stiffness))
     placed = placed_bodies(given.held, motion)
+    lacks = _missing(placed, given)
+    if not _definite(stiffness, points, wanted.keeps):
+        lacks["stiffening"] = f"in the state reduced it has buckled, or nearly: {NO_STIFFENING}"
+    stiffening = None
+    if not {"stiffening", "exact inertia"} & lacks.keys():
+        stiffened = Stiffened(given, wanted, kept, K, placed, places)
+        stiffening = stiffened.constants(mass, stiffness, (M + M.T) / 2)
+        whole, placed = stiffened.with_load_modes(stiffening)
     invariants = summed_invariants(placed, given.run.model.rigid_bodies.values(), motion, places,
-                                   mass, points, wanted.keeps)
-    inside = recovered(placed, _nodes_inside(given, wanted, motion, places))
+                                   mass, points, wanted.keeps, stiffening)
+    inside = recovered(placed, _nodes_inside(given, wanted, motion, places), len(mass))
     return ReducedBody(
         stiffness, mass, points, wanted.keeps, kept.modes, _damping(damping, stiffness, mass),
-        invariants, inside.recovery, _notes(given, wanted, kept, inside.numbers), _loads(placed),
-        _missing(placed),
+        invariants, inside.recovery, _notes(given, wanted, kept, inside.numbers),
+        _loads(placed, len(mass)), lacks,
         tuple(dict.fromkeys(m for one in placed for m in one.body.materials)),
         given.run.model.units, preload=preload)
 
@@ -226,21 +237,38 @@ def _damping(damping: NDArray, stiffness: NDArray, mass: NDArray) -> NDArray | N
     return damping if np.abs(damping).max(initial=0.0) > 0.0 else None
 
 
-def _loads(placed: list[Placed]) -> dict[str, NDArray]:
+def _loads(placed: list[Placed], n: int) -> dict[str, NDArray]:
     """Loads of the bodies by name: those of one name act together."""
     found: dict[str, NDArray] = {}
     for one in placed:
         for name, load in one.body.loads.items():
-            found[name] = found.get(name, 0.0) + one.rows.T @ load
+            found[name] = found.get(name, 0.0) + one.rows[:, :n].T @ load
     return found
 
 
-def _missing(placed: list[Placed]) -> dict[str, str]:
-    found = {"stiffening": NO_STIFFENING}
+def _definite(stiffness: NDArray, points: NDArray, keeps: tuple[str, ...]) -> bool:
+    """Tell if only rigid motion costs no strain energy, so that stresses have shapes of their own.
+    """
+    rigid = rigid_motions(points, keeps, len(stiffness), points.mean(axis=0))
+    unit = np.sqrt(np.abs(np.diag(stiffness)))
+    unit[unit == 0.0] = 1.0
+    count = np.linalg.matrix_rank(rigid)
+    values = np.linalg.eigvalsh(stiffness / np.outer(unit, unit))
+    return not len(values) > count or bool(values[count] > DEFINITE * values[-1])
+
+
+def _missing(placed: list[Placed], given: Given) -> dict[str, str]:
+    found = {}
     for one in placed:
-        for what in ("stresses", "exact inertia"):
+        for what in ("stresses", "exact inertia", "stiffening"):
             if what in one.body.lacks:
                 found[what] = f"body {one.name!r} has none: {one.body.lacks[what]}"
+        if one.body.invariants is None:
+            found.setdefault("exact inertia", f"body {one.name!r} has none")
+    for load in given.run.model.loads:
+        kind = load.kind.removeprefix(PLANAR)
+        if kind not in KNOWN:
+            found["stiffening"] = f"{kind.replace('_', ' ')} {load.name!r} inside: {NO_STIFFENING}"
     return found
 
 
