@@ -258,7 +258,7 @@ def _definite(stiffness: NDArray, points: NDArray, keeps: tuple[str, ...]) -> bo
 
 
 def _missing(placed: list[Placed], given: Given) -> dict[str, str]:
-    found = {}
+    found: dict[str, str] = {}
     for one in placed:
         for what in ("stresses", "exact inertia", "stiffening"):
             if what in one.body.lacks:
