@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -197,7 +199,7 @@ def _nearest(path: Path, point: NDArray) -> float:
         i = int(np.argmin(np.linalg.norm(of(ways) - point, axis=1)))
         low, high = ways[max(i - 1, 0)], ways[min(i + 1, len(ways) - 1)]
 
-        def square(way: float, of=of) -> float:
+        def square(way: float, of: Callable[..., NDArray] = of) -> float:
             return float(np.sum((of(way) - point)**2))
         local = _polished(of, float(ways[i]), point, float(low), float(high))
         found.append((square(local), local + piece.offset))
@@ -205,7 +207,7 @@ def _nearest(path: Path, point: NDArray) -> float:
     return float(min(found)[1])
 
 
-def _polished(of, way: float, point: NDArray, low: float, high: float) -> float:
+def _polished(of: Callable[..., NDArray], way: float, point: NDArray, low: float, high: float) -> float:
     """A way where the path is normal to the line to a point, from one nearby: Newton's steps."""
     for _ in range(POLISHED):
         gap, slope, bend = of(way) - point, of(way, 1), of(way, 2)

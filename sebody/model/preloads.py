@@ -30,5 +30,5 @@ def add_preload(model: Mechanism, body: Superelement) -> None:
             ends.append(points.get(key, node))
         length = float(((ends[1].point - ends[0].point)**2).sum()**0.5)
         # a line in compression is a spring with twice its length as free length
-        spring(model, *ends, stiffness=abs(float(tension)) / length,
+        spring(model, ends[0], ends[1], stiffness=abs(float(tension)) / length,
                length=0.0 if tension > 0 else 2 * length, name=f"{body.name} preload {k}")

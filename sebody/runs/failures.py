@@ -59,7 +59,9 @@ def _beyond(model: Model, numbering: Numbering, state: State) -> str:
     for joint in model.joints:
         if joint.kind != PATH:
             continue
-        way, path = way_of(joint, "a run"), joint.constraints[0].path.path
+        on = joint.constraints[0].path
+        assert on is not None           # of a joint of this kind
+        way, path = way_of(joint, "a run"), on.path
         s, rate = (float(row[numbering.dof_blocks[way]]) for row in (state.q_old, state.v_old))
         found += [(abs(s - end) / path.length, f"joint {joint.name!r} comes to the {word} of path "
                    f"{path.name!r}, whose length is {path.length:.6g}: its way is {s:.6g} and the "
