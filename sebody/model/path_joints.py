@@ -207,7 +207,8 @@ def _nearest(path: Path, point: NDArray) -> float:
     return float(min(found)[1])
 
 
-def _polished(of: Callable[..., NDArray], way: float, point: NDArray, low: float, high: float) -> float:
+def _polished(of: Callable[..., NDArray], way: float, point: NDArray, low: float, high: float
+              ) -> float:
     """A way where the path is normal to the line to a point, from one nearby: Newton's steps."""
     for _ in range(POLISHED):
         gap, slope, bend = of(way) - point, of(way, 1), of(way, 2)
