@@ -10,6 +10,8 @@ from sebody.analysis import Ensemble, ValueAndGradient, final, gradients
 from sebody.cli.entry import main
 from sebody.control import lookup, pid
 from sebody.explore.ensembles import ensemble
+from sebody.fem import rectangle
+from sebody.parameters import table
 
 H, END = 0.005, 0.1
 OUTPUTS = {"angle": final("pin.rate")}
@@ -139,3 +141,35 @@ def test_a_fault_of_a_function_is_the_reason_of_the_runs_that_meet_it():
     for reason in outcome.failures.values():
         assert re.match("stopped at t = 0.0[12][0-9]*: the function of 'push' raised IndexError: "
                         "index 3 is out of bounds .*: correct it", reason), reason
+
+
+def test_a_model_is_as_before_after_values_were_tried():
+    """Values that builders refuse are tried on the model itself, run by run."""
+    model = arm()
+    found = table.varied({name: table.parameter(model, name) for name in (
+        "rub.coefficient", "buffer.lower")})
+    before = {name: float(model.element(name.partition(".")[0]).constants[
+        name.partition(".")[2]]) for name in found}
+    reasons = table.refused(model, found, {"rub.coefficient": [0.1, -1.0], "buffer.lower": [
+        -0.4, 0.9]}, 2)
+    assert list(reasons) == [1]
+    assert before == {name: float(model.element(name.partition(".")[0]).constants[
+        name.partition(".")[2]]) for name in found}
+
+
+def test_whole_bodies_are_set_before_their_factors():
+    """Factors are those of the body that is there, in whatever order both are named."""
+    model = Model(planar=True)
+    ends = model.node("a", (0.0, 0.0)), model.node("b", (1.0, 0.0))
+    model.beam("beam", ends, rectangle(0.01, 0.02, 7e10, 0.3, 2700.0), 4, 1, 2)
+    names = "beam.stiffness", "beam.reduced"
+    for order in (names, names[::-1]):
+        found = table.varied({name: table.parameter(model, name) for name in order})
+        assert list(found)[0] == "beam.reduced"
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0])
+def test_a_factor_of_nothing_is_refused(factor):
+    """A bound that is not reached itself."""
+    with pytest.raises(InputError, match="above 0"):
+        Ensemble(arm(), H).run({"arm.mass": [1.0, factor]}, END, OUTPUTS)

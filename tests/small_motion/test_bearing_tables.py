@@ -118,3 +118,10 @@ def test_tables_are_refused_where_they_are_not_read():
             (3, {}, "give columns by their names"), ("none.csv", {}, "none.csv does not exist")):
         with pytest.raises(InputError, match=said):
             disc(table=table, **more)
+
+
+@pytest.mark.parametrize("speeds", [[-5.0, 100.0], [100.0, 100.0], [100.0]])
+def test_speeds_of_a_table_ascend_from_zero(speeds):
+    with pytest.raises(InputError, match="speeds must ascend from zero or above, two of them"):
+        disc(table={"frequency": speeds, "kxx": np.ones(len(speeds))})
+    assert disc(table={"frequency": [0.0, 5.0], "kxx": [1.0, 2.0]}).element("film").table
