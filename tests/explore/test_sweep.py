@@ -331,6 +331,13 @@ def test_answers_of_one_or_two_parameters_are_listed(varied, axes, tmp_path):
     assert (tmp_path / "sweep.png").stat().st_size > 5000
 
 
+def test_samples_of_two_parameters_are_told_by_quantiles():
+    """Not every combination of their values is a run."""
+    table = sweep(build, OUTPUTS, {}, {"length": Distribution("uniform", (1.0, 1.5)),
+                                       "mass": Distribution("uniform", (1.0, 2.0))}, runs=3)
+    assert table.axes() == [] and table.summary().splitlines()[1].startswith("output")
+
+
 def test_tables_and_pictures_have_the_units_of_the_model(tmp_path, monkeypatch):
     """Also a table that is read from its file; without units there are none."""
     def in_millimetres(length: float = 900.0):
