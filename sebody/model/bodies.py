@@ -248,9 +248,9 @@ def _check_place(name: str, body: ReducedBody, nodes: tuple[Node, ...]) -> None:
         order = _fitting_order(points, body.coordinates, allowed)
         raise InputError(f"superelement {name!r}: the nodes do not lie where the body's "
                          f"boundary nodes are (off by {error:.3g} after the best shift), at {own}: "
-                         + (f"give them in the order {', '.join(nodes[k].name for k in order)}"
-                            if order else
-                            "pass rotation=, the matrix that turns FE axes into global axes"
+                         + (f"give them in the order {', '.join(nodes[k].name for k in order)}, or "
+                            if order else "")
+                         + ("pass rotation=, the matrix that turns FE axes into global axes"
                             if _turned(points, body.coordinates) <= allowed else
                             "give the nodes these places, or import the body with theirs "
                             "(@x,y,z); no rotation= makes them fit"))

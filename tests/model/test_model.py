@@ -63,7 +63,8 @@ def place(nodes=("base", "tip"), body=None, **options):
     (place(["base"]), "superelement 'b' has 2 boundary nodes and 1 were given: give one node for"),
     (place(["base", "top"]), "node 'top' is unknown: did you mean 'tip'?"),
     (place(["tip", "base"]), "superelement 'b': the nodes do not lie where the body's boundary "
-                             "nodes are .off by .*: pass rotation=, the matrix that turns FE"),
+                             "nodes are .off by .*: give them in the order base, tip, or pass "
+                             "rotation=, the matrix that turns FE axes"),
     (place(["base", "base"]), "the nodes do not lie where the body's boundary nodes are"),
     (place(frame="mine"), "frame 'mine' is unknown: use one of converged_mean, mean, mean_axes"),
     (place(inertia="z"), "inertia 'z' is unknown: use one of 'frame_axes'"),
