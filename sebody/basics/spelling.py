@@ -22,16 +22,14 @@ Made = TypeVar("Made")
 
 def without_symbols(make: Callable[Arguments, Made], what: str = "") -> Callable[Arguments, Made]:
     """A function that names its arguments where a symbol of theirs is given; see `SYMBOLS`."""
+    told = naming_arguments(make)
+
     @wraps(make)
     def named(*args: Arguments.args, **given: Arguments.kwargs) -> Made:
         if symbols := [symbol for symbol in given if symbol in SYMBOLS]:
             raise InputError(f"{what or make.__name__} has no {'=, '.join(symbols)}=: give "
                              + ", ".join(SYMBOLS[symbol] for symbol in symbols))
-        try:
-            return make(*args, **given)
-        except TypeError:
-            refuse_arguments(make, given)
-            raise
+        return told(*args, **given)
     return named
 
 

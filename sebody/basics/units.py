@@ -58,6 +58,11 @@ def of_rates(units: Units | None, words: str = "rad/time") -> str:
     return words.replace("time", units.time if units else "s")
 
 
+def of_frequencies(units: Units | None) -> str:
+    """The unit of a frequency, Hz without units."""
+    return units.of("1/time") if units else "Hz"
+
+
 def parsed_units(text: Any, what: str = "units") -> Units | None:
     """A set of units from its text; None for an empty one.
 

@@ -19,6 +19,13 @@ def cross(spins: NDArray, vectors: NDArray) -> NDArray:
     return np.cross(spins, vectors)
 
 
+def axes_cross(vectors: NDArray) -> NDArray:
+    """``e_k x`` the columns of (D, m), for every axis of rotation: (r, D, m)."""
+    if len(vectors) == 2:
+        return np.array([[-vectors[1], vectors[0]]])
+    return np.cross(np.eye(3)[:, :, None], vectors[None], axisa=1, axisb=1, axisc=1)
+
+
 def moment_of(arms: NDArray, forces: NDArray) -> NDArray:
     """``r x f`` of arms and forces (..., 3), in a plane (..., 2) about its normal, (..., 1)."""
     if arms.shape[-1] == 2:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.tabular import brief
+from sebody.basics.vectors import axes_cross
 
 # of the arrays: D axes of translation, r of rotation, n coordinates, N with the slaved ones
 LENGTHS = {"c0": ("D",), "S1": ("D", "N"), "J0": ("r", "r"), "g": ("r", "N"), "h": ("r", "r", "N"),
@@ -152,14 +153,14 @@ class InertiaInvariants:
         if not self.slaved:
             return self
         n = self.Q.shape[1]
-        moments = self._cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk, (r, D)
+        moments = axes_cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk, (r, D)
         rigid = np.block([[self.mass * np.eye(len(self.c0)), moments.T], [moments, self.J0]])
         momenta = np.vstack([self.S1, self.g])
         motions = np.linalg.solve(rigid, momenta[:, n:])    # rigid motions of unit rates of eta
         mass, K = np.array(self.Mbar), np.array(self.K)
         mass[:, n:] = momenta.T @ motions
         mass[n:, :n] = mass[:n, n:].T
-        turned = np.concatenate([self._cross(self.S1), self.h.transpose(1, 0, 2)], axis=1)
+        turned = np.concatenate([axes_cross(self.S1), self.h.transpose(1, 0, 2)], axis=1)
         K[:, :, n:] = turned.transpose(0, 2, 1) @ motions
         return replace(self, Mbar=mass, K=K)
 
@@ -171,13 +172,13 @@ class InertiaInvariants:
         """
         point = np.asarray(point, dtype=float)
         shift = point - self.origin
-        arms = self._cross(shift[:, None])[..., 0]      # a_k, (r, D)
-        moments = self._cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk
+        arms = axes_cross(shift[:, None])[..., 0]      # a_k, (r, D)
+        moments = axes_cross(self.c0[:, None])[..., 0]     # E_t^T M E_rk
         return replace(
             self, origin=point, c0=self.c0 - self.mass * shift,
             J0=self.J0 - arms @ moments.T - moments @ arms.T + self.mass * arms @ arms.T,
             g=self.g - arms @ self.S1,
-            h=self.h - np.einsum("ki,lin->kln", arms, self._cross(self.S1)))
+            h=self.h - np.einsum("ki,lin->kln", arms, axes_cross(self.S1)))
 
     def rotated(self, rotation: ArrayLike, by: ArrayLike) -> "InertiaInvariants":
         """The body rotated about the FE origin, in the old axes.
@@ -202,9 +203,3 @@ class InertiaInvariants:
                          optimize=True),
             Mbar=whole @ self.Mbar @ whole.T, Q=by @ self.Q @ by.T, E=by @ self.E,
             Ghat=by @ self.Ghat @ by.T)
-
-    def _cross(self, vectors: NDArray) -> NDArray:
-        """``e_k x`` the columns of (D, m), for every axis of rotation: (r, D, m)."""
-        if self.planar:
-            return np.array([[-vectors[1], vectors[0]]])
-        return np.cross(np.eye(3)[:, :, None], vectors[None], axisa=1, axisb=1, axisc=1)

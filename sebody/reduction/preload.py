@@ -30,6 +30,7 @@ from scipy.linalg import qr
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.tabular import brief, counted
+from sebody.basics.vectors import axes_cross
 from sebody.reduction.rigid_motions import rigid_motions
 
 BALANCED = 1e-6         # of the forces times the size: a sum of them that is none
@@ -235,9 +236,7 @@ def _jacobian(i: int, j: int, a: NDArray, b: NDArray, keeps: tuple[str, ...], si
     for node, arm, sign in ((i, a, -1.0), (j, b, 1.0)):
         found[:, _position_rows(node, keeps, D)] += sign * np.eye(D)
         if arm.any():
-            turned = (np.array([[-arm[1]], [arm[0]]]) if D == 2 else
-                      np.cross(np.eye(3), arm).T)       # columns e_k x r
-            found[:, _rotation_rows(node, keeps, D)] += sign * turned
+            found[:, _rotation_rows(node, keeps, D)] += sign * axes_cross(arm[:, None])[..., 0].T
     return found
 
 

@@ -24,6 +24,7 @@ from scipy.linalg import null_space
 from scipy.sparse import bmat, csc_matrix, diags
 
 from sebody.assembly.numbering import placed, rotational
+from sebody.basics.vectors import axes_cross
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.links import place_dependent
 from sebody.engine.state import State
@@ -222,7 +223,7 @@ def _orientation(model: Mechanism, dof_block: DofBlock, numbering: Numbering,
 
 def _turned(arm: NDArray) -> NDArray:
     """Velocity of the end of an arm by its angular velocity."""
-    return np.array([[-arm[1]], [arm[0]]]) if arm.size == 2 else np.cross(np.eye(3), arm).T
+    return axes_cross(arm[:, None])[..., 0].T
 
 
 def _rows(bodies: list[_Deformation], system: System, state: State, n: int) -> csc_matrix:

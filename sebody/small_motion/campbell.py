@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
-from sebody.basics.units import Units, of_rates, parsed_units
+from sebody.basics.units import Units, of_frequencies, of_rates, parsed_units
 from sebody.model.model import Model
 from sebody.model.parts import Node
 from sebody.pictures.frequency_pictures import ORDERS, Diagram, save_campbell
@@ -73,7 +73,7 @@ class Campbell:
                  f"{of_rates(self.units)}, in {self.frame} axes"
                  + f" ({self.reason})" * bool(self.reason))
         heads = tuple(head.format(
-            hertz=self.units.of("1/time") if self.units else "Hz", first=first, last=last,
+            hertz=of_frequencies(self.units), first=first, last=last,
             rate=of_rates(self.units), growth=of_rates(self.units, "1/time")) for head in HEADS)
         hertz = self.omega / (2 * np.pi)
         growths = np.where(np.abs(self.growth) > self.rounding, self.growth, 0.0)

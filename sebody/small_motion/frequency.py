@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.assembly.evaluation import evaluate
 from sebody.basics import inputs, tabular
 from sebody.basics.errors import InputError
-from sebody.basics.units import Units, of_rates, parsed_units
+from sebody.basics.units import Units, of_frequencies, of_rates, parsed_units
 from sebody.contract.layout import RECORD_T, RESIDUAL
 from sebody.engine.evaluate import set_loads, to_body_axes
 from sebody.model.model import Model
@@ -57,8 +57,7 @@ class FrequencyResponse:
         return tabular.titled(self._title(), self._heads(), self._rows())
 
     def _heads(self) -> tuple[str, ...]:
-        frequency = self.units.of("1/time") if self.units else "Hz"
-        return tuple(head.format(frequency) for head in HEADS)
+        return tuple(head.format(of_frequencies(self.units)) for head in HEADS)
 
     def _title(self) -> str:
         return (f"response to a unit of {self.load!r}, {len(self.omega)} frequencies from "

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from sebody.basics.vectors import skew
+from sebody.basics.vectors import axes_cross, skew
 from sebody.explore.assemblies.placed_bodies import Motion, Placed
 from sebody.fem.mass_field import MassField
 from sebody.model.parts import Element
@@ -117,8 +117,8 @@ def _consistent(sums: dict[str, NDArray], mass: NDArray, rigid: NDArray, D: int)
                        moments[0, 1] - moments[1, 0]]) / 2
     shifted = S1 / total                # translation that a motion has in the mean
     rest = np.eye(len(mass)) - rigid[:, :D] @ shifted
-    turned = _cross(S1)                 # e_k x S1, (r, D, n)
-    units = _cross(np.eye(D))           # (e_k x e_i), (r, D, D) by columns i
+    turned = axes_cross(S1)                 # e_k x S1, (r, D, n)
+    units = axes_cross(np.eye(D))           # (e_k x e_i), (r, D, D) by columns i
     K = np.array([_with_translations(own, shifted, rest, units[k].T @ S1, -1.0)
                   for k, own in enumerate(sums["K"])])
     J2 = np.array([[_with_translations(
@@ -134,10 +134,3 @@ def _with_translations(matrix: NDArray, shifted: NDArray, rest: NDArray, known: 
     """
     across = shifted.T @ known
     return across + sign * (across @ rest).T + rest.T @ matrix @ rest
-
-
-def _cross(vectors: NDArray) -> NDArray:
-    """``e_k x`` the columns of (D, m), for every axis of rotation: (r, D, m)."""
-    if len(vectors) == 2:
-        return np.array([[-vectors[1], vectors[0]]])
-    return np.cross(np.eye(3)[:, :, None], vectors[None], axisa=1, axisb=1, axisc=1)

@@ -12,13 +12,13 @@ import numpy as np
 
 from sebody.assembly.elimination_order import parents
 from sebody.basics.errors import InputError
+from sebody.contract.names import IN_PLANE
 from sebody.explore.assemblies.wanted import Interfaces
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint
 from sebody.model.path_joints import PATH
 from sebody.model.variants.copying import copied
 
-PLANAR = "planar_"
 PASSIVE = ("spring", "torsion_spring", "bushing", "gear_play", "distance_stop", "slide_stop",
            "turn_stop", "friction_", "point_on_", "sphere_on_", "body_contact_")
 OUTER = ("force", "torque", "follower_force", "follower_torque")
@@ -67,7 +67,7 @@ def refuse_outsiders(model: Model, interfaces: Interfaces) -> None:
 
 
 def _refuse_load(load: Element, held: set[DofBlock]) -> None:
-    kind = load.kind.removeprefix(PLANAR)
+    kind = load.kind.removeprefix(IN_PLANE)
     where = " and ".join(dict.fromkeys(repr(one.node.name) for one in load.attachments))
     at = f" at node {where}" * bool(where)
     if kind.startswith(PASSIVE):
@@ -95,10 +95,10 @@ def freed(model: Model, interfaces: Interfaces) -> Freed:
     made = without_gravity(model)
     held = set(interfaces.blocks(made))
     supports = [joint for joint in made.joints if _supports(made, joint, held)]
-    loads = [load for load in made.loads if load.kind.removeprefix(PLANAR) in OUTER]
+    loads = [load for load in made.loads if load.kind.removeprefix(IN_PLANE) in OUTER]
     left_out = ["gravity, which the body bears itself"] * bool(model.gravity_field.any())
     left_out += [f"{joint.kind} {joint.name!r}" for joint in supports]
-    left_out += [f"{load.kind.removeprefix(PLANAR).replace('_', ' ')} {load.name!r}"
+    left_out += [f"{load.kind.removeprefix(IN_PLANE).replace('_', ' ')} {load.name!r}"
                  for load in loads]
     left_out += [f"what {'drives' if block.motions else 'fixes'} {block.name}"
                  for block in dict.fromkeys(interfaces.blocks(made)) if block.fixed]

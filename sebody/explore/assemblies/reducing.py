@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.contract.names import IN_PLANE
 from sebody.explore.assemblies.inertia_sums import summed_invariants
-from sebody.explore.assemblies.inside import PLANAR
 from sebody.explore.assemblies.kept_shapes import Kept, LooseInside, kept_shapes
 from sebody.explore.assemblies.placed_bodies import Motion, Placed, placed_bodies
 from sebody.explore.assemblies.recovered import recovered
@@ -119,7 +119,7 @@ def _reduced(given: Given, wanted: Interfaces, modes: int | Accuracy | None) -> 
                                    mass, points, wanted.keeps, stiffening)
     inside = recovered(placed, _nodes_inside(given, wanted, motion, places), len(mass))
     return ReducedBody(
-        stiffness, mass, points, wanted.keeps, kept.modes, _damping(damping, stiffness, mass),
+        stiffness, mass, points, wanted.keeps, kept.modes, damping if damping.any() else None,
         invariants, inside.recovery, _notes(given, wanted, kept, inside.numbers),
         _loads(placed, len(mass)), lacks,
         tuple(dict.fromkeys(m for one in placed for m in one.body.materials)),
@@ -186,7 +186,6 @@ def _places(given: Given) -> dict[str, NDArray]:
     for node in run.model.nodes.values():
         found[node.name] = node.point
         if node.position in numbering.dof_blocks:
-            first = numbering.dof_blocks[node.position]
             found[node.name] = given.held[f"{node.name}.position"][-1].copy()
         if node.rotation not in numbering.dof_blocks:
             continue
@@ -232,11 +231,6 @@ def _preload(given: Given, wanted: Interfaces, kept: Kept, stiffness: NDArray, p
     return preload_of(forces - left, points, wanted.keeps, len(forces))
 
 
-def _damping(damping: NDArray, stiffness: NDArray, mass: NDArray) -> NDArray | None:
-    """The damping, if it is more than rounding."""
-    return damping if np.abs(damping).max(initial=0.0) > 0.0 else None
-
-
 def _loads(placed: list[Placed], n: int) -> dict[str, NDArray]:
     """Loads of the bodies by name: those of one name act together."""
     found: dict[str, NDArray] = {}
@@ -266,7 +260,7 @@ def _missing(placed: list[Placed], given: Given) -> dict[str, str]:
         if one.body.invariants is None:
             found.setdefault("exact inertia", f"body {one.name!r} has none")
     for load in given.run.model.loads:
-        kind = load.kind.removeprefix(PLANAR)
+        kind = load.kind.removeprefix(IN_PLANE)
         if kind not in KNOWN:
             found["stiffening"] = f"{kind.replace('_', ' ')} {load.name!r} inside: {NO_STIFFENING}"
     return found

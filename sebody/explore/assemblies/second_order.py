@@ -27,15 +27,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.vectors import axes_cross
 from sebody.explore.assemblies.placed_bodies import Placed
+from sebody.fem.beam_elements import symmetric
 from sebody.reduction.invariants import InertiaInvariants
-
-
-def generators(dimension: int) -> NDArray:
-    """``e_k x`` as matrices, (r, D, D)."""
-    if dimension == 2:
-        return np.array([[[0.0, -1.0], [1.0, 0.0]]])
-    return np.cross(np.eye(3)[:, None], np.eye(3)[None]).transpose(0, 2, 1)
 
 
 class SecondOrder(NamedTuple):
@@ -44,11 +39,6 @@ class SecondOrder(NamedTuple):
     turned: NDArray         # (n_b, n, n) Y of equation (2)
     local: NDArray          # (n_b, n) L
     work: NDArray           # (loads, n, n) W of equation (3), of unit loads
-
-
-def symmetric(forms: NDArray) -> NDArray:
-    """The symmetric parts of (..., n, n)."""
-    return (forms + np.swapaxes(forms, -1, -2)) / 2
 
 
 def of_body(one: Placed, own: InertiaInvariants, rows: NDArray, linked: NDArray, origin: NDArray,
@@ -68,7 +58,7 @@ def of_body(one: Placed, own: InertiaInvariants, rows: NDArray, linked: NDArray,
     size : float
         By which loads of turning and spinning are divided.
     """
-    body, D, E = one.body, len(origin), generators(len(origin))
+    body, D, E = one.body, len(origin), axes_cross(np.eye(len(origin)))
     n = rows.shape[1]
     arms = body.rigid_modes_about(origin)[:, D:]
     phi = one.frame @ rows
@@ -128,7 +118,7 @@ def of_point(mass: float, place: NDArray, moved: NDArray, size: float) -> NDArra
     place : (D,)
         From the origin.
     """
-    E = generators(len(place))
+    E = axes_cross(np.eye(len(place)))
     r = len(E)
     turns = np.einsum("kab,b->ka", E, place)
     spins = np.einsum("mba,kb->kma", E, turns)      # A_m^T e_k x X

@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
+from sebody.basics.tabular import counted
 from sebody.contract.layout import RECORD
-from sebody.explore.assemblies.inside import OUTER, PLANAR, freed, refuse_outsiders, without_gravity
+from sebody.contract.names import IN_PLANE
+from sebody.explore.assemblies.inside import OUTER, freed, refuse_outsiders, without_gravity
 from sebody.explore.assemblies.wanted import Interfaces
 from sebody.model.extent import extent
 from sebody.model.model import Model
@@ -60,7 +62,8 @@ def given_state(run: Simulation | Result | Model, interfaces: Interfaces, preloa
     _take(moved, held, interfaces)
     forces = rotating(moved, Spin.of(free, None))[1]
     linear = linearize(moved)
-    notes = [f"reduced from a model of {_counted(model)}; {said}"]
+    bodies = counted(len(model.bodies) + len(model.rigid_bodies), "body")
+    notes = [f"reduced from a model of {bodies} and {len(model.joints)} joints; {said}"]
     notes += [f"left out: {', '.join(left_out)}"] * bool(left_out)
     return Given(moved, held, linear, linear.free.T @ forces, tuple(notes),
                  isinstance(run, Model))
@@ -78,7 +81,7 @@ def _of_model(model: Model, interfaces: Interfaces, preload: bool) -> tuple[Resu
 
 def _rests(run: Simulation) -> bool:
     """Tell if nothing inside is under stress, nor loaded: its forces would move it by nothing."""
-    if any(load.kind.removeprefix(PLANAR) in OUTER for load in run.model.loads):
+    if any(load.kind.removeprefix(IN_PLANE) in OUTER for load in run.model.loads):
         return False
     forces, linear = rotating(run, Spin.of(run.model, None))[1], linearize(run)
     forces = linear.free.T @ forces
@@ -147,8 +150,3 @@ def _blocks(before: Model, after: Model) -> Iterator[tuple[DofBlock, DofBlock]]:
         for kind in ("position", "rotation"):
             if getattr(one, kind) is not None:
                 yield getattr(one, kind), getattr(other, kind)
-
-
-def _counted(model: Model) -> str:
-    bodies = len(model.bodies) + len(model.rigid_bodies)
-    return f"{bodies} {'body' if bodies == 1 else 'bodies'} and {len(model.joints)} joints"

@@ -12,19 +12,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sebody.basics.vectors import axes_cross
+from sebody.contract.names import IN_PLANE
 from sebody.explore.assemblies.inertia_sums import of_rigid
 from sebody.explore.assemblies.kept_shapes import Kept
 from sebody.explore.assemblies.placed_bodies import Placed
 from sebody.explore.assemblies.second_order import (
     SecondOrder,
-    generators,
     of_body,
     of_point,
-    symmetric,
     unit_loads,
 )
 from sebody.explore.assemblies.states import Given
 from sebody.explore.assemblies.wanted import Interfaces
+from sebody.fem.beam_elements import symmetric
 from sebody.model.parts import DofBlock, Element
 from sebody.reduction.invariants import InertiaInvariants
 from sebody.reduction.rigid_motions import rigid_motions
@@ -88,7 +89,7 @@ class Stiffened:
         """Second derivative of a place on the kept shapes, (D, n, n); not zero on rigid links."""
         if block not in self._linked:
             D, n = self._run.model.dimension, self._n
-            E, found = generators(D), np.zeros((D, n, n))
+            E, found = axes_cross(np.eye(D)), np.zeros((D, n, n))
             for rotation, arm in block.arms:
                 if not rotation.solved:
                     continue
@@ -150,7 +151,7 @@ class Stiffened:
         moved, arm = self._second(node.position), np.zeros(D)
         if one.kind.endswith("rigid_body"):
             arm = self._places[f"{node.name}.rotation"] @ one.vector("mc") / one.number("mass")
-            psi, E = self._rows(f"{node.name}.rotation") @ self._kept.shapes, generators(D)
+            psi, E = self._rows(f"{node.name}.rotation") @ self._kept.shapes, axes_cross(np.eye(D))
             moved = moved + symmetric(np.einsum("kab,lbc,c,ki,lj->aij", E, E, arm, psi, psi))
         self._work += of_point(one.number("mass"),
                                self._places[node.name] + arm - self._origin, moved, self._size)
@@ -200,7 +201,7 @@ class Stiffened:
 
     def _of_element(self, load: Element, u: NDArray) -> NDArray:
         ends, shapes = load.attachments, self._kept.shapes
-        kind, k = load.kind.removeprefix("planar_"), load.number("k")
+        kind, k = load.kind.removeprefix(IN_PLANE), load.number("k")
         if kind == "spring":
             names = [f"{one.node.name}.position" for one in ends]
             places = [self._places[one.node.name] for one in ends]
@@ -219,7 +220,7 @@ class Stiffened:
         axis = self._places[f"{ends[0].node.name}.rotation"] @ np.cross(n, m)
         moment = k * (axis @ (rows[1] - rows[0]) @ u)
         return -moment * symmetric(np.einsum(
-            "a,kab,ki,bj->ij", axis, generators(3), rows[0] @ shapes, rows[1] @ shapes))
+            "a,kab,ki,bj->ij", axis, axes_cross(np.eye(3)), rows[0] @ shapes, rows[1] @ shapes))
 
     def _of_joints(self, u: NDArray, loads: NDArray, reactions: NDArray) -> NDArray:
         """Stiffness of the forces of explicit constraints: by the tangent with their multipliers.
