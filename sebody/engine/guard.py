@@ -9,6 +9,7 @@ move what rested in contact: nothing is struck. From then on its own rate is wha
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import AT_DEPTH, AT_IMPACT, AT_RATE
+from sebody.engine.selection import either
 
 LARGEST = 0.1           # change of the rate in a step, relative to the speed of the impact
 AT_ENDS = 0.015          # the same in steps in which it begins or opens: forces have a corner
@@ -16,15 +17,14 @@ AT_ENDS = 0.015          # the same in steps in which it begins or opens: forces
 
 @compiled
 def contact_too_fast(system, state):
-    """Whether the step that has converged is too long for a contact."""
+    """Whether the step that has converged is too long for a contact; in lanes, of which members."""
     kept, old = state.frames, state.frames_old
+    fast = 0.0 * state.clock.floor > 1.0
     for k in range(system.guarded.size):
         rate, impact = system.guarded[k] + AT_RATE, system.guarded[k] + AT_IMPACT
-        now, before, closed = kept[impact], old[impact], old[system.guarded[k] + AT_DEPTH] >= 0.0
-        if before == 0.0 and closed and abs(old[rate]) <= LARGEST * now:
-            continue
-        within = now > 0.0 and (before > 0.0 or closed)
-        allowed = LARGEST * now if within else AT_ENDS * max(now, before)
-        if abs(kept[rate] - old[rate]) > allowed > 0.0:
-            return True
-    return False
+        now, before, depth = kept[impact], old[impact], old[system.guarded[k] + AT_DEPTH]
+        struck = (before != 0.0) | (depth < 0.0) | (abs(old[rate]) > LARGEST * now)
+        within = (now > 0.0) & ((before > 0.0) | (depth >= 0.0))
+        allowed = either(within, LARGEST * now, AT_ENDS * max(now, before))
+        fast = fast | (struck & (allowed > 0.0) & (abs(kept[rate] - old[rate]) > allowed))
+    return fast

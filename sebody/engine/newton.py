@@ -66,7 +66,7 @@ def apply_correction(system, state, scheme, mixed):
                  ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock.floor
     state.clock.acceleration_norm, state.clock.target = accelerations, target
     verdict = _verdict(system, state, norm, left_norm, target)
-    if verdict == CONVERGED and _strayed(system, state, scheme):
+    if verdict == CONVERGED and strayed(system, state, scheme):
         return GIVE_UP
     ended = verdict == CONVERGED or verdict == GIVE_UP
     if ended and regularized and leaves_gap(system, state, norm, scheme.stabilized):
@@ -75,34 +75,38 @@ def apply_correction(system, state, scheme, mixed):
 
 
 @compiled
-def _strayed(system, state, scheme):
+def strayed(system, state, scheme):
     """Whether a step ends half a radian, or half the model's size, from where its rates led.
+
+    In lanes, of which members.
 
     A step that is too long may have such roots: the tolerance is relative to the increment, so
     however far the iteration goes astray, it converges there.
     """
     reach = ASTRAY / (scheme.beta * state.clock.current_step * state.clock.current_step)
+    far = 0.0 * state.clock.floor > 1.0
     for i in range(system.diagonal.size):
-        if system.magnitude[i] > 0.0 and (
-                abs(state.aux[i] - state.aux_old[i]) > reach * system.magnitude[i]):
-            return True
-    return False
+        far = far | ((system.magnitude[i] > 0.0) & (
+            abs(state.aux[i] - state.aux_old[i]) > reach * system.magnitude[i]))
+    return far
 
 
 @compiled
 def leaves_gap(system, state, norm, stabilized):
     """Whether a residual is left that the corrections of a regularized matrix cannot remove.
 
+    In lanes, of which members.
+
     That of the iterate before the last correction is at most the correction times the matrix, whose
     scaled entries are at most one.
     """
-    n, left = system.diagonal.size, 0.0
+    n, left = system.diagonal.size, 0.0 * norm
     for i in range(n):
         residual = state.residual[i]
         if stabilized:
             residual += state.constraint_residuals[i]
         left += residual * residual * state.scale[i] * state.scale[i]
-    return np.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock.floor
+    return math.sqrt(left) > n * norm + WIDEST_GAP / ROUNDING * state.clock.floor
 
 
 @compiled(forceinline=True)

@@ -15,6 +15,7 @@ of `PERIOD` steps it is made, in others not, and the mean corrections of both ar
 """
 
 from sebody.compiler.decorators import ANY_ORDER, compiled
+from sebody.engine.selection import any_positive, either
 from sebody.kernels.abi import at, pointer_to
 
 ORDER = 8
@@ -39,18 +40,6 @@ _SOLUTION = _FACTORS + ORDER * ORDER
 LAST, BEFORE, FITTED, ON, AGE, SUM, WITH, WITHOUT = range(
     _SOLUTION + ORDER, _SOLUTION + ORDER + 8)
 FIT = WITHOUT + 1      # its size
-
-
-@compiled
-def either(condition, a, b):
-    """One of two numbers."""
-    return a if condition else b
-
-
-@compiled
-def any_positive(x):
-    """Whether a number is positive; in lanes, that of any member."""
-    return x > 0.0
 
 
 @compiled

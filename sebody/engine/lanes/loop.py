@@ -14,6 +14,7 @@ from sebody.contract.member_row import RUNNING
 from sebody.engine.calls import call_samples
 from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
+from sebody.engine.guard import contact_too_fast
 from sebody.engine.lanes.apart import (
     APART,
     CUT,
@@ -28,7 +29,6 @@ from sebody.engine.lanes.apart import (
 )
 from sebody.engine.lanes.evaluated import write_evaluated
 from sebody.engine.lanes.growth import grows
-from sebody.engine.lanes.guard import contact_too_fast
 from sebody.engine.lanes.matrix import factorize, renew_bodies
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
 from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age

@@ -5,10 +5,8 @@ import math
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import some, spread, where
 from sebody.engine.lanes.apart import AGAIN, CUT
-from sebody.engine.lanes.regularization import leaves_gap
 from sebody.engine.newton import (
     ACCELERATION_TOLERANCE,
-    ASTRAY,
     BASELINE_STEPS,
     BENT,
     FASTEST,
@@ -24,7 +22,9 @@ from sebody.engine.newton import (
     ROUNDED,
     SLOWEST,
     UNSURE,
+    leaves_gap,
     norms,
+    strayed,
     subtract,
 )
 from sebody.engine.regularization import regularized_norms
@@ -77,7 +77,7 @@ def _verdict(system, state, scheme, active, none, norm, left_norm, iteration):
         failed = failed | (hopeless & ~rounded)
         done = done | (hopeless & rounded)
     if some(done):
-        failed = failed | (done & _strayed(system, state, scheme))
+        failed = failed | (done & strayed(system, state, scheme))
         if control.regularized == 1:
             failed = failed | (done & leaves_gap(system, state, norm, scheme.stabilized))
     left = active & ~done & ~failed
@@ -154,17 +154,6 @@ def _want_matrices(system, state, left, rate, norm, target, iteration):
     control.back_off_left = where(rotated, control.back_off, control.back_off_left)
     control.wanted = where(slow, where(rotated, spread(float(ROTATED)), spread(float(EVALUATED))),
                            control.wanted)
-
-
-@compiled
-def _strayed(system, state, scheme):
-    """Which members end their step far from where their rates led."""
-    reach = ASTRAY / (scheme.beta * state.clock.current_step * state.clock.current_step)
-    strayed = spread(0.0) > 1.0
-    for i in range(system.diagonal.size):
-        strayed = strayed | ((system.magnitude[i] > 0.0) & (
-            abs(state.aux[i] - state.aux_old[i]) > reach * system.magnitude[i]))
-    return strayed
 
 
 @compiled(forceinline=True)

@@ -22,18 +22,6 @@ from sebody.engine.prediction import (
 )
 
 
-@in_lanes_of(prediction.either)
-def either(condition, a, b):
-    """See `prediction.either`."""
-    return where(condition, a, b)
-
-
-@in_lanes_of(prediction.any_positive)
-def any_positive(x):
-    """See `prediction.any_positive`."""
-    return some(x > 0.0)
-
-
 @in_lanes_of(prediction.ring_place)
 def ring_place(steps, grid):
     """See `prediction.ring_place`."""
