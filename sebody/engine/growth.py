@@ -24,6 +24,7 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import ENERGY, KINETIC, POTENTIAL, STRAIN
 from sebody.engine.evaluate import run_kernels
 from sebody.engine.scalars import record
+from sebody.engine.selection import either
 from sebody.engine.step_control import forget_errors
 from sebody.kernels.abi import pointer_to
 
@@ -69,11 +70,19 @@ def grows(system, state):
     guard = state.guard
     if guard.off == 1.0:
         return False
-    for k in range(state.works.size):
-        guard.supplied += abs(state.works[k] - state.works_old[k])
-    guard.wait -= 1.0
+    count_supplied(state, True)
     cut = state.control.level > guard.halved      # Newton's iteration has not converged
     return (cut or guard.wait <= 0.0) and judge(system, state)
+
+
+@compiled
+def count_supplied(state, running):
+    """Count a step, and the works in it; in lanes, of the members that are running."""
+    guard = state.guard
+    for k in range(state.works.size):
+        more = guard.supplied + abs(state.works[k] - state.works_old[k])
+        guard.supplied = either(running, more, guard.supplied)
+    guard.wait = either(running, guard.wait - 1.0, guard.wait)
 
 
 @compiled
@@ -81,34 +90,53 @@ def judge(system, state):
     """Look at the energies; whether the step is to be rejected."""
     guard = state.guard
     strain, kinetic = guard.most_strain, guard.most_kinetic
-    before = strain + kinetic
-    balance = take_balance(system, state)
-    more = guard.most_strain + guard.most_kinetic - before
-    driven = more > DRIVEN * before and guard.supplied > DRIVEN * more
-    guard.lowest = balance if driven or before == 0.0 else guard.lowest + WORKED * guard.supplied
-    guard.supplied = 0.0
-    rise = balance - guard.lowest
-    turned = turn_of_frames(system, state)
-    allowed = SHARE * guard.most_strain + (KEPT + TURNED * turned) * guard.most_kinetic
-    allowed += ROUNDED * state.clock.floor * state.clock.floor
+    balance, lowest, allowed = look_at_energies(system, state)
+    rise, before = balance - lowest, strain + kinetic
     if rise > allowed:
+        guard.supplied = 0.0
         elsewhere = before > 0.0 and rise > ELSEWHERE * before
         if elsewhere:
             guard.most_strain, guard.most_kinetic = strain, kinetic
         return _reject(state, balance, elsewhere)
-    guard.calm += guard.stride
-    if guard.halved > 0.0 and guard.calm > guard.patient:
-        guard.halved -= 1.0
-        guard.calm = 0.0
-    guard.balance, guard.lowest = balance, min(guard.lowest, balance)
-    near = rise > ATTENTIVE * allowed or guard.halved > 0.0
-    guard.stride = 1.0 if near else min(2.0 * max(guard.stride, 1.0), RAREST)
-    guard.wait = guard.stride
+    let_pass(state, True, balance, lowest, allowed)
     return False
 
 
 @compiled
-def take_balance(system, state):
+def look_at_energies(system, state):
+    """Balance of the energies, from what it may rise, and by how much; keeps the largest energies.
+    """
+    guard = state.guard
+    before = guard.most_strain + guard.most_kinetic
+    balance = _take_balance(system, state)
+    more = guard.most_strain + guard.most_kinetic - before
+    driven = (more > DRIVEN * before) & (guard.supplied > DRIVEN * more)
+    lowest = either(driven | (before == 0.0), balance, guard.lowest + WORKED * guard.supplied)
+    turned = _turn_of_frames(system, state)
+    allowed = SHARE * guard.most_strain + (KEPT + TURNED * turned) * guard.most_kinetic
+    return balance, lowest, allowed + ROUNDED * state.clock.floor * state.clock.floor
+
+
+@compiled
+def let_pass(state, passing, balance, lowest, allowed):
+    """Accept a step that was looked at; choose the next one to look at. In lanes, of some members.
+    """
+    guard = state.guard
+    guard.calm = either(passing, guard.calm + guard.stride, guard.calm)
+    longer = passing & (guard.halved > 0.0) & (guard.calm > guard.patient)
+    guard.halved = either(longer, guard.halved - 1.0, guard.halved)
+    guard.calm = either(longer, 0.0, guard.calm)
+    guard.balance = either(passing, balance, guard.balance)
+    guard.lowest = either(passing, min(lowest, balance), guard.lowest)
+    guard.supplied = either(passing, 0.0, guard.supplied)
+    near = (balance - lowest > ATTENTIVE * allowed) | (guard.halved > 0.0)
+    stride = either(near, 1.0, min(2.0 * max(guard.stride, 1.0), RAREST))
+    guard.stride = either(passing, stride, guard.stride)
+    guard.wait = either(passing, stride, guard.wait)
+
+
+@compiled
+def _take_balance(system, state):
     """Energies of the state less all works so far; remembers the largest energies."""
     guard, energy = state.guard, state.energy
     energy[KINETIC] = energy[STRAIN] = energy[POTENTIAL] = 0.0
@@ -122,7 +150,7 @@ def take_balance(system, state):
 
 
 @compiled
-def turn_of_frames(system, state):
+def _turn_of_frames(system, state):
     """Square of the largest rotation of a body's frame in the step."""
     now, old = pointer_to(state.frames), pointer_to(state.frames_old)
     most, first = 0.0, 0

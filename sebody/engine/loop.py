@@ -23,8 +23,9 @@ from sebody.engine.growth import grows
 from sebody.engine.guard import contact_too_fast
 from sebody.engine.matrix import solve
 from sebody.engine.newton import (
-    apply_correction,
+    HUGE,
     begin_with_matrix,
+    correct,
     count_matrix,
     take_shift,
     want_matrix,
@@ -149,7 +150,7 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             take_shift(system, state)
             control.phase = READY
             continue
-        verdict = apply_correction(system, state, scheme, mixed)
+        verdict = correct(system, state, scheme, True, control.iteration, mixed)
         reason = np.int64(_conclude(system, state, record, scheme, verdict))
 
 
@@ -205,9 +206,9 @@ def _conclude(system, state, record, scheme, verdict):
         accept(system, state, record)
         control.phase = BEGIN
     elif verdict == NEW_MATRIX:
-        want_matrix(system, state)
+        want_matrix(system, state, True)
     elif verdict == GIVE_UP or verdict == LEAVES_GAP:
-        if not np.isfinite(clock.last_norm):
+        if not clock.last_norm < HUGE:
             return NOT_FINITE
         if control.fresh > 0:
             return SLOW if verdict == GIVE_UP else GAP

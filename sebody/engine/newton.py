@@ -5,13 +5,12 @@ The factorized matrix is kept in body axes and reused until slow convergence ask
 
 import math
 
-import numpy as np
-
 from sebody.compiler.decorators import ANY_ORDER, compiled
 from sebody.contract.layout import C_DAMPING, C_MASS
 from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.engine.matrix import ROUNDING
 from sebody.engine.regularization import regularized_norms
+from sebody.engine.selection import any_true, either
 from sebody.engine.state import (
     CONVERGED,
     EVALUATED,
@@ -44,34 +43,33 @@ ACCELERATION_TOLERANCE = 100.0  # tolerance relative to accelerations, over that
 WIDEST_GAP = 1e-5       # between what joints demand, relative to the extent of the model
 ROUNDED = 100.0         # of the target: where new matrices do not help, what is left is rounding
 ASTRAY = 0.5            # sizes of a coordinate, that it may end from where its rates lead
+HUGE = 1e300            # a norm above this is no number, or as good as none
 QUICK = 0.05            # a contraction rate below this needs no acceleration by mixing
 
 
 @compiled(forceinline=True)
-def apply_correction(system, state, scheme, mixed):
-    """Subtract the solved correction; returns the verdict on the step, CONVERGED to GIVE_UP."""
-    n = system.diagonal.size
-    regularized = state.control.regularized == 1
-    norm, size, accelerations = (regularized_norms(system, state, n) if regularized else
-                                 norms(system, state, n))
-    if not np.isfinite(norm):
-        state.clock.last_norm = norm
-        return GIVE_UP
-    left_norm = accelerate(system, state, n, norm) if mixed else norm
+def correct(system, state, scheme, active, iteration, mixed):
+    """Subtract the solved correction; the verdict on the step, CONVERGED to GIVE_UP.
+
+    In lanes, of the `active` members, whose corrections alone are not zero. A correction that is no
+    number is not subtracted.
+    """
+    clock, n = state.clock, system.diagonal.size
+    norm, size, accelerations = (regularized_norms(system, state, n)
+                                 if state.control.regularized == 1 else norms(system, state, n))
+    sound = active & (norm < HUGE)
+    if any_true((norm >= HUGE) | (norm != norm)):
+        for i in range(n):
+            state.correction[i] = either(norm < HUGE, state.correction[i], 0.0)
+    left_norm = accelerate(system, state, sound, norm) if mixed else norm
     subtract(system, state, scheme, n)
-    accelerations = max(
-        scheme.beta * state.clock.current_step * state.clock.current_step * accelerations,
-        state.clock.acceleration_norm)
+    accelerations = max(scheme.beta * clock.current_step * clock.current_step * accelerations,
+                        clock.acceleration_norm)
     target = min(scheme.tolerance * size,
-                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + state.clock.floor
-    state.clock.acceleration_norm, state.clock.target = accelerations, target
-    verdict = _verdict(system, state, norm, left_norm, target)
-    if verdict == CONVERGED and strayed(system, state, scheme):
-        return GIVE_UP
-    ended = verdict == CONVERGED or verdict == GIVE_UP
-    if ended and regularized and leaves_gap(system, state, norm, scheme.stabilized):
-        return LEAVES_GAP
-    return verdict
+                 ACCELERATION_TOLERANCE * scheme.tolerance * accelerations) + clock.floor
+    clock.acceleration_norm = either(sound, accelerations, clock.acceleration_norm)
+    clock.target = either(sound, target, clock.target)
+    return _verdict(system, state, scheme, sound, iteration, norm, left_norm, target)
 
 
 @compiled
@@ -169,60 +167,90 @@ def _subtract_from_all(n, correction, shift, is_multiplier, to_v, to_a, to_aux, 
 
 
 @compiled(forceinline=True)
-def _verdict(system, state, norm, left_norm, target):
+def _verdict(system, state, scheme, sound, iteration, norm, left_norm, target):
     """Count the iteration; convergence or the next action from its contraction rate."""
-    clock, control = state.clock, state.control
-    iteration, last, rate = control.iteration, clock.last_norm, clock.contraction
+    clock, control, last = state.clock, state.control, state.clock.last_norm
     if iteration == 0:
-        clock.span = norm / target
-    if iteration > 0 and last > 0.0:
-        rate = norm / last
-        clock.contraction = rate
-    control.iteration = iteration + 1
-    control.iterations += 1
+        clock.span = either(sound, norm / target, clock.span)
+    else:
+        clock.contraction = either(sound & (last > 0.0), norm / last, clock.contraction)
+    control.iteration = either(sound, control.iteration + 1, control.iteration)
+    control.iterations = either(sound, control.iterations + 1, control.iterations)
     clock.last_norm = left_norm
-    rate = min(max(rate, UNSURE if iteration == 0 else FASTEST), SLOWEST)
-    if rate / (1.0 - rate) * left_norm <= target:
-        return CONVERGED
-    left = MAX_ITERATIONS - iteration - 1
-    if iteration > 2 and control.fresh > 2 and rate > 0.9:
-        return CONVERGED if left_norm <= ROUNDED * target else GIVE_UP
-    if left <= 0:
-        return GIVE_UP
-    if iteration == 0 or control.fresh >= MOST_MATRICES:
-        return GO_ON
-    if iteration == 1 and control.fresh > 0 and rate < BENT:
-        return GO_ON        # what the first correction bends the second one stretches
-    cost = REFACTORIZATION_COST
-    if next_matrix(system, state) == ROTATED:
-        cost = ROTATED_COST if state.inverse.size > 1 else ROTATED_BLOCKS_COST
-    slow = rate > POOR or np.log(target / norm) / np.log(rate) > min(cost, left)
-    return NEW_MATRIX if slow else GO_ON
+    rate = min(max(clock.contraction, UNSURE if iteration == 0 else FASTEST), SLOWEST)
+    unsettled = sound & (rate / (1.0 - rate) * left_norm > target)
+    verdict = either(unsettled, GO_ON, CONVERGED)
+    if any_true(unsettled):
+        verdict = _next_action(system, state, unsettled, iteration, rate, norm, left_norm, target)
+    converged = sound & (verdict == CONVERGED)
+    if state.control.regularized == 1:
+        ended = sound & ((verdict == CONVERGED) | (verdict == GIVE_UP))
+        if any_true(ended):
+            gap = ended & leaves_gap(system, state, norm, scheme.stabilized)
+            verdict = either(gap, LEAVES_GAP, verdict)
+    if any_true(converged):
+        verdict = either(converged & strayed(system, state, scheme), GIVE_UP, verdict)
+    return either(norm < HUGE, verdict, GIVE_UP)
+
+
+@compiled(forceinline=True)
+def _next_action(system, state, unsettled, iteration, rate, norm, left_norm, target):
+    """The verdict where the correction has not converged; CONVERGED of members that have."""
+    fresh, rest = state.control.fresh, MAX_ITERATIONS - iteration - 1
+    verdict = either(unsettled, GO_ON, CONVERGED)
+    if rest <= 0:
+        verdict = either(unsettled, GIVE_UP, verdict)
+    elif iteration > 0:
+        slow = unsettled & (fresh < MOST_MATRICES) & (
+            (rate > POOR) | (_left(system, state, rest, rate, norm) > target))
+        if iteration == 1:      # what the first correction bends the second one stretches
+            slow = slow & ((fresh < 1) | (rate >= BENT))
+        verdict = either(slow, NEW_MATRIX, verdict)
+    if iteration > 2:
+        hopeless = unsettled & (fresh > 2) & (rate > 0.9)
+        rounded = either(left_norm <= ROUNDED * target, CONVERGED, GIVE_UP)
+        verdict = either(hopeless, rounded, verdict)
+    return verdict
+
+
+@compiled(forceinline=True)
+def _left(system, state, rest, rate, norm):
+    """Norm after as many further corrections as the next matrix costs, or as are allowed."""
+    few = many = norm
+    if state.inverse.size > 1:
+        for _ in range(min(int(ROTATED_COST), rest)):
+            few = few * rate
+    else:
+        few = few * rate * (math.sqrt(rate) if rest > 1 else 1.0)   # ROTATED_BLOCKS_COST
+    for _ in range(min(int(REFACTORIZATION_COST), rest)):
+        many = many * rate
+    return either(state.control.fresh < system.linked[0], few, many)
 
 
 @compiled
-def accelerate(system, state, n, norm):
+def accelerate(system, state, sound, norm):
     """Anderson mixing with the last correction; returns the norm of the mixed correction.
 
     With matrices of the predicted state the error of a taut chain that rotates decays slowly in
     one direction, which mixing with one correction removes. The multipliers of a regularized
     matrix are too uncertain to be asked.
     """
+    n, control = system.diagonal.size, state.control
     correction, last, change = state.correction, state.last_correction, state.last_change
-    along = square = mix = 0.0
-    regularized = state.control.regularized == 1
-    if state.control.secant == 1 and norm > QUICK * state.clock.last_norm:
+    along = square = mix = 0.0 * state.clock.floor
+    mixing = sound & (control.secant == 1) & (norm > QUICK * state.clock.last_norm)
+    if any_true(mixing):
         for i in range(n):
-            if regularized and system.is_multiplier[i] > 0.0:
+            if control.regularized == 1 and system.is_multiplier[i] > 0.0:
                 continue
             w = state.weight[i]
             difference = (correction[i] - last[i]) * w
             along += difference * correction[i] * w
             square += difference * difference
-        if square > 0.0 and abs(along) < square:
-            mix = along / square
-            norm = np.sqrt(max(norm * norm - along * mix, 0.0))
-    state.control.secant = 1
+        mixing = mixing & (square > 0.0) & (abs(along) < square)
+        mix = either(mixing, along / square, 0.0)
+        norm = either(mixing, math.sqrt(max(norm * norm - along * mix, 0.0)), norm)
+    control.secant = 1
     for i in range(n):
         d = correction[i]
         change[i] = correction[i] = d - mix * (change[i] + d - last[i])
@@ -231,41 +259,37 @@ def accelerate(system, state, n, norm):
 
 
 @compiled(forceinline=True)
-def next_matrix(system, state):
-    """Matrices of a refactorization within a step: rotated ones first, if they help, then new."""
-    return ROTATED if system.linked[0] == 1 and state.control.fresh == 0 else EVALUATED
-
-
-@compiled(forceinline=True)
 def begin_with_matrix(state):
     """Choose whether a step refactorizes before its first iteration, and from which matrices.
 
     Where every step takes a matrix, old element matrices cost a chain up to one iteration a step.
+    In lanes members choose for themselves.
     """
     clock, control = state.clock, state.control
     control.fresh = 0
-    if clock.factor_step != clock.current_step:
-        control.wanted = EVALUATED
-    renewed, left = control.wanted == RENEWED, control.back_off_left > 0
-    if left and (renewed or control.wanted == KEPT):
-        control.back_off_left -= 1
-        control.wanted = EVALUATED if control.age >= OLDEST_ROTATED else ROTATED
-    if renewed:
-        control.wanted = ROTATED
+    control.wanted = either(clock.factor_step == clock.current_step, control.wanted, EVALUATED)
+    renewed = control.wanted == RENEWED
+    refreshed = (control.back_off_left > 0) & (renewed | (control.wanted == KEPT))
+    control.back_off_left = either(refreshed, control.back_off_left - 1, control.back_off_left)
+    control.wanted = either(refreshed, EVALUATED, control.wanted)
+    rotated = renewed | (refreshed & (control.age < OLDEST_ROTATED))
+    control.wanted = either(rotated, ROTATED, control.wanted)
 
 
 @compiled(forceinline=True)
-def want_matrix(system, state):
-    """Ask for a refactorization within a step.
+def want_matrix(system, state, wanting):
+    """Ask for a refactorization within a step: with rotated matrices first, if they help, then new.
 
     If rotated body matrices are enough, the next steps begin with such a refresh. The back-off,
-    their number, doubles until a step converges without any refactorization.
+    their number, doubles until a step converges without any refactorization. In lanes, of the
+    members that are `wanting`.
     """
     control = state.control
-    control.wanted = next_matrix(system, state)
-    if control.wanted == ROTATED:
-        control.back_off = min(2 * control.back_off + 1, LONGEST_BACK_OFF)
-        control.back_off_left = control.back_off
+    rotated = wanting & (control.fresh < system.linked[0])
+    control.wanted = either(wanting, either(rotated, ROTATED, EVALUATED), control.wanted)
+    longer = min(2 * control.back_off + 1, LONGEST_BACK_OFF)
+    control.back_off = either(rotated, longer, control.back_off)
+    control.back_off_left = either(rotated, control.back_off, control.back_off_left)
 
 
 @compiled(forceinline=True)
@@ -297,21 +321,22 @@ def watch_age(state):
     Counted are the iterations beyond those that the baseline contraction would have needed. Very
     old ones go even if they cost nothing: what they leave of the error, within the tolerance, has
     the same sign in every step of a steady motion, and the energy drifts. Every 3000 steps new
-    matrices take half a percent of the time.
+    matrices take half a percent of the time. In lanes members count for themselves.
     """
     clock, control = state.clock, state.control
     control.age += 1
-    if control.age > OLDEST:
-        control.wanted = EVALUATED
-    if control.iteration < 2:
-        return
-    if control.age <= BASELINE_STEPS:
-        clock.baseline_contraction = min(clock.baseline_contraction,
-                                          max(clock.contraction, FASTEST))
-        return
-    needed, left = 1, clock.span        # one, and one for every factor that is left
-    while needed < control.iteration and left > 1.0:
-        needed, left = needed + 1, left * clock.baseline_contraction
-    clock.excess += control.iteration - needed
-    if clock.excess > REFACTORIZATION_COST:
-        control.wanted = EVALUATED
+    counted = control.iteration > 1
+    best = min(clock.baseline_contraction, max(clock.contraction, FASTEST))
+    clock.baseline_contraction = either(counted & (control.age <= BASELINE_STEPS), best,
+                                        clock.baseline_contraction)
+    # one correction is needed, and one for every factor of the baseline that is left
+    lost, left = control.iteration - 1.0, clock.span
+    counted = counted & (control.age > BASELINE_STEPS)
+    more = counted & (left > 1.0)
+    while any_true(more):
+        lost = either(more, lost - 1.0, lost)
+        left = left * clock.baseline_contraction
+        more = more & (lost > 0.0) & (left > 1.0)
+    clock.excess = either(counted, clock.excess + lost, clock.excess)
+    old = (control.age > OLDEST) | (counted & (clock.excess > REFACTORIZATION_COST))
+    control.wanted = either(old, EVALUATED, control.wanted)

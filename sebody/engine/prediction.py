@@ -15,7 +15,7 @@ of `PERIOD` steps it is made, in others not, and the mean corrections of both ar
 """
 
 from sebody.compiler.decorators import ANY_ORDER, compiled
-from sebody.engine.selection import any_positive, either
+from sebody.engine.selection import any_true, either
 from sebody.kernels.abi import at, pointer_to
 
 ORDER = 8
@@ -87,7 +87,7 @@ def look_back(system, state, of_accelerations):
     fit[LAST] = either(best, zero, either(bent, zero + 2.0, either(straight, zero + 1.0, zero)))
     fit[BEFORE] = either(best, zero, either(bent, zero - 1.0, zero))
     fit[FITTED] = either(best, zero + 1.0, zero)
-    if any_positive(fit[ON]):
+    if any_true(fit[ON] > 0.0):
         _fit_anew(system, state, steps)
 
 
@@ -159,7 +159,7 @@ def _fit_anew(system, state, steps):
         _put_product(fit, now, (steps - j - 2) % ROWS, of_c)
     _add_equations(fit, steps)
     due = refitted(fit[ON], state.control.steps)
-    if any_positive(due):
+    if any_true(due > 0.0):
         _solve(fit, due)
     c0, c1, c2, c3 = (fit[_COEFFICIENTS], fit[_COEFFICIENTS + 1], fit[_COEFFICIENTS + 2],
                       fit[_COEFFICIENTS + 3])

@@ -12,8 +12,6 @@ the accelerations come from a look ahead: one more correction, in the state a sh
 
 import math
 
-import numpy as np
-
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import (
     ACCELERATION,
@@ -38,7 +36,8 @@ from sebody.engine.evaluate import (
 from sebody.engine.kept_factors import exchange, give_back, keep_matrices_of_bodies
 from sebody.engine.links import place_dependent
 from sebody.engine.matrix import solve
-from sebody.engine.newton import FASTEST, REFACTORIZATION_COST
+from sebody.engine.newton import FASTEST, HUGE, REFACTORIZATION_COST
+from sebody.engine.selection import either
 from sebody.engine.state import (
     AHEAD,
     ASKED,
@@ -108,7 +107,7 @@ def restart(system, state, lead, dense):
         if control.restart == AHEAD:
             _take_rates(system, state, lead)
             return _end(system, state)
-        verdict = _correct(system, state)
+        verdict = correct(system, state, True)
         if verdict == FAILED:
             return _fail(system, state, NO_START)
         if verdict == DONE:
@@ -203,42 +202,44 @@ def subtract(system, state):
 
 
 @compiled
-def _correct(system, state):
-    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE."""
+def correct(system, state, going):
+    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE. In lanes, of some members.
+    """
     control, clock, n = state.control, state.clock, system.diagonal.size
     norm, size, left = subtract(system, state)
-    rate = norm / clock.last_norm if control.iteration > 0 else 0.0
-    clock.last_norm = norm
-    control.iteration += 1
-    if not np.isfinite(norm):
-        return FAILED
-    stays = rate > HARDLY
-    none = (max(ACCURATE, ROUNDED if stays else 0.0) * size
-            + (STIFF if stays else 1.0) * _rounding(system, state))
-    if norm <= none or (control.fresh == 0 and 0.0 < rate < POOR and
-                        max(rate, FASTEST) / (1.0 - rate) * norm <= none):
+    rate = either(control.iteration > 0, norm / clock.last_norm, 0.0)
+    clock.last_norm = either(going, norm, clock.last_norm)
+    control.iteration = either(going, control.iteration + 1, control.iteration)
+    stays, poor, old = rate > HARDLY, rate > POOR, (control.fresh < 1) & (rate > 0.0)
+    none = (either(stays, ROUNDED, ACCURATE) * size
+            + either(stays, STIFF, 1.0) * _rounding(system, state))
+    settles = (rate <= POOR) & (max(rate, FASTEST) / (1.0 - rate) * norm <= none)
+    verdict = either((norm <= none) | (old & settles), DONE, SOLVE)
+    many = norm     # what as many corrections as new factors cost leave
+    for _ in range(int(REFACTORIZATION_COST)):
+        many = many * rate
+    renew = going & (verdict == SOLVE) & (poor | (old & (many > none)))
+    control.wanted = either(renew, EVALUATED, control.wanted)
+    ended = (verdict == SOLVE) & ((control.iteration >= MOST_CORRECTIONS) | (
+        poor & (control.fresh >= MOST_MATRICES)))
+    if control.regularized == 1 and system.massless[0] == 0:
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
         # something without mass
-        gap = (control.regularized == 1 and system.massless[0] == 0
-               and left > n * norm + CONTRADICTION * size)
-        return FAILED if gap else DONE
-    if rate > POOR or (control.fresh == 0 and rate > 0.0 and
-                       np.log(none / norm) / np.log(rate) > REFACTORIZATION_COST):
-        control.wanted = EVALUATED
-    ended = control.iteration >= MOST_CORRECTIONS or (rate > POOR
-                                                       and control.fresh >= MOST_MATRICES)
-    if ended and norm <= clock.floor * _fastest(system):
-        return DONE         # frames of bodies are found to rounding, and so are their forces
-    return FAILED if ended else SOLVE
+        gap = (verdict == DONE) & (left > n * norm + CONTRADICTION * size)
+        verdict = either(gap, FAILED, verdict)
+    # frames of bodies are found to rounding, and so are their forces
+    exact = norm <= clock.floor * _fastest(system, state)
+    verdict = either(ended, either(exact, DONE, FAILED), verdict)
+    return either(norm < HUGE, verdict, FAILED)
 
 
 @compiled
-def _fastest(system):
+def _fastest(system, state):
     """Bound of the squares of frequencies that bodies hold: `FASTER` than a coordinate alone."""
-    largest = 0.0
+    largest = 0.0 * state.clock.floor
     for i in range(system.body_mass.size):
-        if system.body_mass[i] > 0.0:
-            largest = max(largest, system.body_stiffness[i] / system.body_mass[i])
+        square = system.body_stiffness[i] / system.body_mass[i]
+        largest = either(system.body_mass[i] > 0.0, max(largest, square), largest)
     return FASTER * largest
 
 
@@ -249,10 +250,10 @@ def _rounding(system, state):
     They move positions by less than their rounding in a step, or are rounding of what the
     velocities make.
     """
-    speed, h = 0.0, state.clock.current_step
+    speed, h = 0.0 * state.clock.floor, state.clock.current_step
     for i in range(state.v.size):
-        if system.magnitude[i] > 0.0:
-            speed = max(speed, abs(state.v[i]) / system.magnitude[i])
+        own = max(speed, abs(state.v[i]) / system.magnitude[i])
+        speed = either(system.magnitude[i] > 0.0, own, speed)
     return state.clock.floor * (1.0 / (h * h) + SUMMANDS * speed * speed)
 
 

@@ -14,6 +14,6 @@ def either(condition, a, b):
 
 
 @compiled
-def any_positive(x):
-    """Whether a number is positive; in lanes, that of any member."""
-    return x > 0.0
+def any_true(truth):
+    """Return a truth as it is; in lanes, whether it is true of any member."""
+    return truth

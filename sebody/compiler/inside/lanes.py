@@ -56,8 +56,8 @@ class Mask(types.Type):
 
 
 def takes_lanes(kinds: tuple[types.Type, ...]) -> bool:
-    """Whether a function with arguments of some types is given lanes, or pointers to them."""
-    return any(isinstance(getattr(kind, "dtype", kind), Lanes) for kind in kinds)
+    """Whether a function with arguments of some types is given lanes, pointers to them or masks."""
+    return any(isinstance(getattr(kind, "dtype", kind), (Lanes, Mask)) for kind in kinds)
 
 
 def _is_number(kind):

@@ -16,6 +16,7 @@ from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import run_kernels, sum_forces, take_rates, to_body_axes
 from sebody.engine.guard import contact_too_fast
 from sebody.engine.lanes.apart import (
+    AGAIN,
     APART,
     CUT,
     GAVE_UP,
@@ -31,11 +32,17 @@ from sebody.engine.lanes.evaluated import write_evaluated
 from sebody.engine.lanes.growth import grows
 from sebody.engine.lanes.matrix import factorize, renew_bodies
 from sebody.engine.lanes.moved import find_moved, keep_unmoved, run_moved
-from sebody.engine.lanes.newton import begin_with_matrix, correct, watch_age
 from sebody.engine.matrix import solve
-from sebody.engine.newton import take_shift
+from sebody.engine.newton import (
+    HUGE,
+    begin_with_matrix,
+    correct,
+    take_shift,
+    want_matrix,
+    watch_age,
+)
 from sebody.engine.prediction import look_back
-from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED
+from sebody.engine.state import CONVERGED, EVALUATED, GO_ON, KEPT, NEW_MATRIX, RENEWED, ROTATED
 from sebody.engine.step import predict, settle
 from sebody.engine.step_control import NEAR, set_end
 from sebody.engine.vectors import swap
@@ -127,8 +134,21 @@ def _iterate(system, state, scratch, alone, together, scheme, active, dense):
             to_body_axes(system, state.frames, state.constraint_residuals, False)
         to_body_axes(system, state.frames, state.residual, False)
         _solve(system, state, active, scheme.stabilized, dense)
-        active = correct(system, state, scheme, active, iteration, mixed)
+        verdict = correct(system, state, scheme, active, iteration, mixed)
+        active = _conclude(system, state, active, verdict)
         iteration += 1
+
+
+@compiled(forceinline=True)
+def _conclude(system, state, active, verdict):
+    """Act on the verdicts about corrections; returns the members that go on."""
+    control = state.control
+    want_matrix(system, state, active & (verdict == NEW_MATRIX))
+    goes_on = (verdict == GO_ON) | (verdict == NEW_MATRIX)
+    failed = active & ~goes_on & (verdict != CONVERGED)
+    shorter = (control.fresh > 0.0) | ~(state.clock.last_norm < HUGE)
+    control.reason = where(failed, where(shorter, spread(CUT), spread(AGAIN)), control.reason)
+    return active & goes_on
 
 
 @compiled(forceinline=True)

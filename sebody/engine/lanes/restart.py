@@ -12,23 +12,10 @@ from sebody.engine.evaluate import run_kernels, sum_forces, to_body_axes
 from sebody.engine.kept_factors import EXCESS, FEWEST, VALID, swap_factors
 from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.lanes.matrix import factorize_masses
-from sebody.engine.lanes.newton import HUGE
 from sebody.engine.matrix import solve
-from sebody.engine.newton import FASTEST, REFACTORIZATION_COST, SLOWEST
-from sebody.engine.restart import (
-    ACCURATE,
-    CONTRADICTION,
-    HARDLY,
-    MOST_CORRECTIONS,
-    MOST_MATRICES,
-    POOR,
-    ROUNDED,
-    STIFF,
-    SUMMANDS,
-    set_masses,
-    subtract,
-)
-from sebody.engine.state import EVALUATED, KEPT
+from sebody.engine.newton import REFACTORIZATION_COST, SLOWEST
+from sebody.engine.restart import correct, set_masses
+from sebody.engine.state import EVALUATED, FAILED, KEPT, SOLVE
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
 
@@ -58,7 +45,9 @@ def restart(system, state, scratch, alone, active, dense):
         solve(system, state, dense)
         for i in range(system.diagonal.size):
             state.correction[i] = where(going, state.correction[i], spread(0.0))
-        going = _correct(system, state, going)
+        verdict = correct(system, state, going)
+        control.reason = where(going & (verdict == FAILED), spread(GAVE_UP), control.reason)
+        going = going & (verdict == SOLVE)
     if keeps:
         swap_factors(system, state)
         _count_excess(state, active)
@@ -97,42 +86,6 @@ def _evaluate(system, state, scratch, going):
         frames[k] = where(going, frames[k], scratch.frames[k])
     sum_forces(system, state, state.residual)
     to_body_axes(system, state.frames, state.residual, False)
-
-
-@compiled
-def _correct(system, state, going):
-    """Subtract corrections; returns the members that go on."""
-    control, clock, speed = state.control, state.clock, spread(0.0)
-    norm, size, left = subtract(system, state)
-    rate = where(control.iteration > 0.0, norm / clock.last_norm, spread(0.0))
-    clock.last_norm = where(going, norm, clock.last_norm)
-    control.iteration += where(going, spread(1.0), spread(0.0))
-    for i in range(state.v.size):
-        own = abs(state.v[i]) / system.magnitude[i]
-        speed = where(system.magnitude[i] > 0.0, max(speed, own), speed)
-    h = clock.current_step
-    rounding = clock.floor * (1.0 / (h * h) + SUMMANDS * speed * speed)
-    stays = rate > HARDLY
-    none = (where(stays, spread(ROUNDED), spread(ACCURATE)) * size
-            + where(stays, spread(STIFF), spread(1.0)) * rounding)
-    old = (control.fresh == 0.0) & (rate > 0.0)
-    done = going & ((norm <= none) | (old & (rate < POOR) & (
-        max(rate, spread(FASTEST)) / (1.0 - rate) * norm <= none)))
-    failed = going & ~(norm < HUGE)
-    if control.regularized == 1:
-        n = system.diagonal.size
-        failed = failed | (done & (left > n * norm + CONTRADICTION * size))
-    rest = going & ~done & ~failed
-    # as many corrections as new factors cost leave more than rounding
-    many = norm
-    for _ in range(int(REFACTORIZATION_COST)):
-        many = many * rate
-    poor = rest & ((rate > POOR) | (old & (many > none)))
-    control.wanted = where(poor, spread(float(EVALUATED)), control.wanted)
-    failed = failed | (rest & ((control.iteration >= float(MOST_CORRECTIONS)) | (
-        (rate > POOR) & (control.fresh >= float(MOST_MATRICES)))))
-    control.reason = where(failed, spread(GAVE_UP), control.reason)
-    return rest & ~failed
 
 
 @compiled

@@ -11,7 +11,7 @@ def either(condition, a, b):
     return where(condition, a, b)
 
 
-@in_lanes_of(selection.any_positive)
-def any_positive(x):
-    """See `selection.any_positive`."""
-    return some(x > 0.0)
+@in_lanes_of(selection.any_true)
+def any_true(truth):
+    """See `selection.any_true`."""
+    return some(truth)
