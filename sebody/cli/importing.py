@@ -27,6 +27,11 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                              "'cylinder:x,y,z;axis;radius' for a hole; of a foundation's file, "
                              "which names no place, X Y Z or NAME=@x,y,z")
     parser.parse_known_args = partial(_with_places, parser.parse_known_args)
+    parser.add_argument("--path", action="append", default=[], metavar="NODESET", dest="paths",
+                        help="a path that nodes of a model will slide along, may be repeated: "
+                             "keeps the shapes at its nodes and adds static modes of unit loads "
+                             "at 7 of them, in both directions across; NODESET:z in one direction "
+                             "of the FE axes, NODESET:5 at 5 of its nodes, NODESET:z:5 both")
     parser.add_argument("--modes", type=whole, metavar="N",
                         help="number of internal modes (default 0)")
     parser.add_argument("--accuracy", type=real, metavar="E",
@@ -53,7 +58,8 @@ def add(commands: argparse._SubParsersAction) -> argparse.ArgumentParser:
                         help="write reduced matrices even if models would refuse them, so that "
                              "'sebody inspect' can be used")
     parser.add_argument("--lean", action="store_true",
-                        help="omit shapes and mesh of the FE model, which make up most of the file")
+                        help="omit shapes and mesh of the FE model, most of the file, "
+                             "but for the shapes at the nodes of paths")
     parser.add_argument("--compare-free", action="store_true",
                         help="compare free frequencies with those of the FE model without rigid "
                              "faces, which stiffen it; takes another factorization")
@@ -69,12 +75,14 @@ def run(options: argparse.Namespace) -> int:
     from sebody.io.body_file import TARGET, lean, write_body_file
     from sebody.io.importing import Wanted, imported
     from sebody.io.interfaces import parsed
+    from sebody.io.paths import parsed_paths
     from sebody.io.registry import naming, read_source
     from sebody.reduction.watch import Terminal
 
     check_target(options.output, *TARGET)
     wanted = Wanted(parsed(options.interfaces), _modes(options), options.method, options.units,
-                    _damping(options.damping), options.compare_free, options.base)
+                    _damping(options.damping), options.compare_free, options.base,
+                    paths=parsed_paths(options.paths))
     parsed_units(options.units, "--units")
     watch = Terminal()
     try:

@@ -129,7 +129,7 @@ def save_body(body: ReducedBody, path: str | Path, names: tuple[str, ...] | None
         What the body was made from and how.
     recovery : bool
         Whether shapes and mesh of the FE model are kept, most of the file's size; without them
-        there are no displacements inside the body.
+        there are no displacements inside the body, but those of its paths.
 
     Raises
     ------
@@ -155,9 +155,14 @@ def body_parts(body: ReducedBody) -> dict[str, Any]:
 
 
 def lean(file: BodyFile) -> BodyFile:
-    """A body file without the shapes and the mesh of the FE model."""
+    """A body file without the shapes and the mesh of the FE model, but for those of paths."""
     missing = {**file.parts.get("missing", {}), "stresses": _LEAN}
-    return replace(file, parts={**file.parts, "recovery": None, "missing": missing})
+    recovery, paths = file.parts.get("recovery"), file.parts.get("paths", {}).values()
+    if recovery is not None:
+        kept = [recovery.place(int(node)) for nodes in paths for node in nodes]
+        recovery = replace(recovery.restricted(np.array(kept)), cells=(), outlines=None, stress=(),
+                           static=None) if kept else None
+    return replace(file, parts={**file.parts, "recovery": recovery, "missing": missing})
 
 
 def load_body(path: str | Path) -> ReducedBody:
@@ -275,7 +280,7 @@ def _made(arrays: dict[str, NDArray], notes: dict) -> BodyFile:
                   if name.startswith(f"{part}.")}
         if fields:
             parts[part] = kind(**fields)
-    for group in ("loads", "outputs"):
+    for group in ("loads", "outputs", "paths"):
         parts[group] = {name.removeprefix(f"{group}."): array for name, array in arrays.items()
                         if name.startswith(f"{group}.")}
     return BodyFile(parts, checked_names(notes["names"], len(parts["coordinates"])),

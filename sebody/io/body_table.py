@@ -49,6 +49,8 @@ def body_table(file: str, headers: Mapping[str, Header], notes: dict) -> Table:
             members |= {name: members[name]._replace(needed=True) for name in needed}
     members |= {name: Member(("n",)) for name in headers if name.startswith("loads.")}
     members |= {name: Member((None, "n")) for name in headers if name.startswith("outputs.")}
+    members |= {name: Member((None,), "i", least=0) for name in headers
+                if name.startswith("paths.")}
     members |= {name: _listed(name) for name in _references(notes["body"])}
     table = Table(file, REMEDY, members)
     _check_notes(table, notes)

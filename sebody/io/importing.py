@@ -19,6 +19,7 @@ from sebody.io.damping import with_damping
 from sebody.io.held import HeldBody
 from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
+from sebody.io.paths import named_sets, parsed_paths
 from sebody.io.reading import Reading
 from sebody.io.reduced import chosen_interfaces
 from sebody.io.registry import naming, read_source
@@ -30,6 +31,7 @@ from sebody.reduction.free import Resisted
 from sebody.reduction.grounded import grounded_body
 from sebody.reduction.massless import condensed
 from sebody.reduction.methods import free_frequencies, reduce
+from sebody.reduction.path_loads import PathLoads
 from sebody.reduction.watch import SILENT, Watch, watching
 
 
@@ -59,6 +61,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
                 kind: str | None = None, units: str = "", base: "ArrayLike | None" = None,
                 damping: float | Sequence[float] = 0.0, output: str | Path | None = None,
                 compare_free: bool = False, factor: Factor | None = None,
+                paths: "Mapping[str, str | PathLoads] | Iterable[str]" = (),
                 progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """A body of the files of an FE program, as ``sebody import`` makes it.
 
@@ -93,6 +96,12 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         interfaces: what its rigid faces stiffen. It takes another factorization.
     factor : function, optional
         Factors the stiffness in the place of SuperLU, see `sebody.reduction.reduce`.
+    paths : texts, or dict of texts by name
+        Paths that nodes of a model will slide along: names of node sets whose nodes lie in a line.
+        ``"RAIL"`` keeps the shapes at the nodes of this set, adds static modes of unit loads at 7
+        of them in both directions across, and `Model.path` takes the name for its `nodes`.
+        ``"RAIL:z"`` has loads along z of the FE axes alone, ``"RAIL:5"`` at 5 of its nodes,
+        ``"RAIL:z:5"`` both; in a dict any name for a path of such a text.
     progress : function of a text, or True, optional
         Is told what takes long, what it will cost, and what costs less; True for lines on standard
         error.
@@ -108,7 +117,7 @@ def import_body(path: str | Path, interfaces: Mapping[str, str | int] | Iterable
         check_target(output, *TARGET)
     watch = watching(progress)
     wanted = Wanted(parsed(interfaces), modes, method, units, damping,
-                    inputs.flag(compare_free, "compare_free"), base, factor)
+                    inputs.flag(compare_free, "compare_free"), base, factor, parsed_paths(paths))
     watch.stage(f"reading {path}")
     file = imported(read_source(path, kind), wanted, path, watch)
     with naming(path):
@@ -129,6 +138,7 @@ class Wanted(NamedTuple):
     compare_free: bool = False
     base: ArrayLike | None = None
     factor: Factor | None = None
+    paths: Mapping[str, PathLoads] = {}
 
 
 def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = SILENT
@@ -136,6 +146,10 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     """Body that is to be written of a reading."""
     model, units = reading.model, str(parsed_units(wanted.units) or "")
     if not isinstance(model, FEModel):
+        if wanted.paths:
+            raise InputError(f"path {next(iter(wanted.paths))!r}: {path} holds matrices that are "
+                             "reduced already, of which nothing is known of nodes inside: import "
+                             "the whole FE model, with its node sets")
         return _damped(_grounded(_reduced(reading, wanted.interfaces, wanted.modes, units),
                                  wanted.base), wanted.damping)
     if wanted.base is not None:
@@ -144,7 +158,8 @@ def imported(reading: Reading, wanted: Wanted, path: str | Path, watch: Watch = 
     interfaces, method = wanted.interfaces, wanted.method
     boundary = tied(model, interfaces, reading.rotation_nodes)
     try:
-        body = reduce(model, boundary.items, wanted.modes, method, judged=True,
+        body = reduce(model, boundary.items, wanted.modes, method,
+                      paths=named_sets(model, wanted.paths), judged=True,
                       factor=wanted.factor, progress=watch)
     except Resisted as error:
         raise InputError(f"{path}: {error}{reading.cards(error.nodes, error.turns)}") from error

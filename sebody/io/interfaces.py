@@ -240,12 +240,17 @@ def _face(model: FEModel, one: Interface) -> tuple[BoundaryItem, str]:
 
 
 def _set(model: FEModel, one: Interface) -> tuple[int, ...]:
-    """Nodes of a named set or surface; capitals and blanks do not matter."""
-    plain = {"".join(name.upper().split()): name for name in model.node_sets}
-    nodes = model.node_set(plain.get("".join(one.node_set.upper().split()), one.node_set))
+    """Nodes of a named set or surface."""
+    nodes = model.node_set(set_called(model, one.node_set))
     if not nodes:
         raise InputError(f"node set {one.node_set!r} is empty: name the nodes of the face")
     return nodes
+
+
+def set_called(model: FEModel, name: str) -> str:
+    """Name of a node set as the model writes it; capitals and blanks do not matter."""
+    plain = {"".join(known.upper().split()): known for known in model.node_sets}
+    return plain.get("".join(name.upper().split()), name)
 
 
 def _middle(model: FEModel, middle: Middle | None, nodes: tuple[int, ...], one: Interface

@@ -28,14 +28,14 @@ ENDS = "refuse", "straight", "ground"
 
 def path(model: Mechanism, name: str,
          on: str | Superelement | Node | Sequence[str | Superelement] | None = None,
-         nodes: Sequence | None = None, points: ArrayLike | None = None, blend: float = 0.0,
+         nodes: str | Sequence | None = None, points: ArrayLike | None = None, blend: float = 0.0,
          ends: str | tuple[str, str] = "refuse") -> Path:
     """A path along FE nodes of a body or of several ones, or a curve on a node or the ground.
 
     Between its nodes the path is a cubic spline of what the recovery of the body says of them, in
-    second order where the body has geometric stiffening. Static shapes of loads at some of its
-    nodes (``craig_bampton(..., loads=, residual_modes=True)``) make it accurate under slow loads;
-    fast ones need vibrations that bend it.
+    second order where the body has geometric stiffening. Static modes of loads at some of its
+    nodes (``paths=`` of `reduce` and `import_body`) make it accurate under slow loads; fast ones
+    need vibrations that bend it.
 
     Parameters
     ----------
@@ -43,8 +43,9 @@ def path(model: Mechanism, name: str,
     on : str, Superelement, Node, or sequence of superelements
         Superelements by name, in the order of the path, or a beam of `Model.beam`; or the node
         that carries a curve, by default the ground.
-    nodes : sequence, optional
-        Of a body: two nodes of the model that it is on, whose connecting line is the path, or
+    nodes : str or sequence, optional
+        Of a body: the name of a path that its reduction was given; two nodes of the model that it
+        is on, whose connecting line is the path; or
         labels of FE nodes in order (numbers where they have no labels), two at least, which the
         recovery has. Of several bodies a sequence for each. By default the line between the two
         nodes of a body.
@@ -241,6 +242,8 @@ def _piece(model: Mechanism, what: str, body: Superelement, nodes: object) -> Pa
     """The piece of a path on a body."""
     recovery = body.reduced.recovery
     assert recovery is not None
+    if isinstance(nodes, str):
+        nodes = _named(what, body, recovery, nodes)
     first = body.reduced.position_nodes[0]
     points = body.nodes[first].point + recovery.points - body.reduced.coordinates[first]
     given = _two_nodes(model, what, body) if nodes is None else list(inputs.items(
@@ -254,6 +257,16 @@ def _piece(model: Mechanism, what: str, body: Superelement, nodes: object) -> Pa
         places = [_labelled(what, body, recovery, one) for one in given]
     names = [f"FE node {recovery.called(place)} of {body.name!r}" for place in places]
     return PathPiece(body, tuple(places), points[places], _ways(what, points[places], names), 0.0)
+
+
+def _named(what: str, body: Superelement, recovery: Recovery, name: str) -> list[int]:
+    """Labels of the FE nodes of a path that the body has."""
+    paths = body.reduced.paths
+    if name not in paths:
+        raise unknown(f"{what}: path of superelement {body.name!r},", name, paths, "the body has",
+                      "the body has none: import it with --path, reduce it with paths=, or give "
+                      "labels of FE nodes in order")
+    return [recovery.called(recovery.place(int(node))) for node in paths[name]]
 
 
 def _two_nodes(model: Mechanism, what: str, body: Superelement) -> list[Node]:

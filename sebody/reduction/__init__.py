@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sebody.reduction.grounded import grounded_body
     from sebody.reduction.interfaces import MeanFace, RigidFace
     from sebody.reduction.methods import free_frequencies, reduce
+    from sebody.reduction.path_loads import PathLoads
     from sebody.reduction.self_weight import grounded_from_fe, self_weight_stiffness
     from sebody.reduction.weights import body_weights, frame_weights
 
@@ -22,6 +23,7 @@ __all__ = [
     "Accuracy",
     "ComponentModes",
     "MeanFace",
+    "PathLoads",
     "ReducedBody",
     "RigidFace",
     "appendage",

@@ -24,7 +24,7 @@ from sebody.reduction.loads import named_outputs, named_vectors
 from sebody.reduction.missing import checked_missing, lacks, sentences
 from sebody.reduction.preload import Preload, preload_of
 from sebody.reduction.recovery import Recovery
-from sebody.reduction.recovery_checks import check_recovery
+from sebody.reduction.recovery_checks import check_recovery, checked_paths
 from sebody.reduction.rigid_motions import first_moment, rigid_motions, strainless_coordinates
 from sebody.reduction.summary import mode_lines, place
 
@@ -85,6 +85,9 @@ class ReducedBody:
         Forces on the interfaces that hold the undeformed body, which is under stress. They are
         carried by lines between the interfaces, whose stiffness is not in `stiffness`: models get
         springs in their place, see `sebody.reduction.preload`.
+    paths : mapping of str to (k,) of int
+        FE nodes of paths by name, in order, which `Model.path` takes for its nodes; by their
+        numbers in the FE model, among those of the recovery.
 
     Raises
     ------
@@ -109,6 +112,7 @@ class ReducedBody:
     outputs: Mapping[str, NDArray] = field(default_factory=dict)
     base: int | None = None
     preload: Preload | None = None
+    paths: Mapping[str, NDArray] = field(default_factory=dict)
     # of a rotated body what it was made of, and the rotation; `replace` does not take it over
     _made_of: tuple[ReducedBody, NDArray] | None = field(default=None, init=False, repr=False)
 
@@ -160,6 +164,8 @@ class ReducedBody:
         object.__setattr__(self, "loads", {n: _read_only(load) for n, load in loads.items()})
         object.__setattr__(self, "outputs", {name: _read_only(matrix) for name, matrix in
                                              named_outputs(self.outputs, len(names)).items()})
+        object.__setattr__(self, "paths", {name: _read_only(nodes) for name, nodes in
+                                           checked_paths(self.paths, self.recovery).items()})
         object.__setattr__(self, "missing", checked_missing(self.missing))
         object.__setattr__(self, "materials", checked_materials(self.materials))
         object.__setattr__(self, "units", str(parsed_units(self.units) or ""))
@@ -285,7 +291,7 @@ class ReducedBody:
         return np.hstack([y, np.einsum("ki,bij,kj->kb", y, self.invariants.Q, y) / 2])
 
     def recovering(self, nodes: Iterable[int]) -> ReducedBody:
-        """The same body with the shapes of some FE nodes alone.
+        """The same body with the shapes of some FE nodes alone, and of those of its paths.
 
         Parameters
         ----------
@@ -305,6 +311,7 @@ class ReducedBody:
                    for node in inputs.items(nodes, "recover", remedy)]
         if not numbers:
             raise InputError(f"recover names no node: {remedy}")
+        numbers += [self.recovery.place(int(node)) for path in self.paths.values() for node in path]
         return replace(self, recovery=self.recovery.restricted(np.array(numbers)))
 
     def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,

@@ -42,6 +42,8 @@ class Boundary:
         What each boundary node is.
     stiffened : bool
         Whether some are rigid faces.
+    nodes : tuple of int
+        FE nodes that follow them: single ones, and those of rigid faces.
     """
 
     coordinates: NDArray
@@ -54,6 +56,7 @@ class Boundary:
     mean_motions: tuple[tuple[NDArray, NDArray, MeanMotion], ...]
     notes: tuple[str, ...] = ()
     stiffened: bool = False
+    nodes: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
@@ -143,7 +146,9 @@ def boundary_of(fe_model: FEModel, items: Items) -> Boundary:
               for item, motion in motions.items()
               if len(mean_rows[item]["rotation"]) or motion.off_centre),
         tuple(f"boundary node {k}{_name(item)} is {_described(fe_model, item)}"
-              for k, (item, _) in enumerate(pairs)), bool(rigid))
+              for k, (item, _) in enumerate(pairs)), bool(rigid),
+        tuple(node for item, _ in pairs if not isinstance(item, MeanFace)
+              for node in _named(item)[1]))
 
 
 def _name(item: int | RigidFace | MeanFace) -> str:

@@ -94,7 +94,7 @@ def released(body: ReducedBody, node: int, kind: str, modes: int | None = None) 
         {name: basis.T @ load for name, load in body.loads.items()},
         body.missing, body.materials, body.units,
         outputs={name: matrix @ basis for name, matrix in body.outputs.items()},
-        base=None if body.base is None else left.index(body.base))
+        base=None if body.base is None else left.index(body.base), paths=body.paths)
     kept = min(body.modes if modes is None else modes, len(massive))
     return Released(truncated(made, kept), basis[:, :len(bound) + kept], bound)
 

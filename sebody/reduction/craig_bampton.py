@@ -21,6 +21,7 @@ from sebody.reduction.boundary import Items
 from sebody.reduction.clamped import ClampedInterior
 from sebody.reduction.component import ComponentModes, static_modes
 from sebody.reduction.methods import reduce
+from sebody.reduction.path_loads import PathLoads
 
 
 def craig_bampton(
@@ -31,6 +32,7 @@ def craig_bampton(
     recover: Sequence[int] | None = None,
     loads: Mapping[str, ArrayLike] | None = None,
     residual_modes: bool = False,
+    paths: Mapping[str, str | Sequence[int] | PathLoads] | None = None,
 ) -> ReducedBody:
     """Superelement of an FE model; no modes gives Guyan's reduction.
 
@@ -59,15 +61,18 @@ def craig_bampton(
         Loads on the FE DOFs by name, see `sebody.fem.loads`; applied with `Model.body_load`.
     residual_modes : bool
         Further internal modes that make the static response to every load exact.
+    paths : mapping of str to str, sequence of int or PathLoads, optional
+        Paths that nodes slide along, with static modes of loads on them; see `reduce`.
 
     Raises
     ------
     InputError
         Unknown or repeated boundary node, a DOF block the nodes do not have, more modes than there
-        are, boundary nodes that leave a mechanism inside, or loads of another length.
+        are, boundary nodes that leave a mechanism inside, loads of another length, or paths that
+        are none.
     """
     return reduce(fe_model, boundary, modes, "craig-bampton", select, recover, loads,
-                  residual_modes)
+                  residual_modes, paths=paths)
 
 
 def component_modes(

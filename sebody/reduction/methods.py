@@ -45,6 +45,7 @@ from sebody.reduction.free import check_connected, check_free
 from sebody.reduction.loads import fe_loads, with_residual_modes
 from sebody.reduction.massless import MASSLESS
 from sebody.reduction.missing import missing_of
+from sebody.reduction.path_loads import PathLoads, loaded_paths
 from sebody.reduction.rigid_motions import strainless_coordinates
 from sebody.reduction.ties import Ties
 from sebody.reduction.watch import SILENT, Watch, watching
@@ -60,7 +61,9 @@ _MASSLESS = 1e-12  # inverse square of a frequency that is infinite, relative to
 def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
            method: str = "craig-bampton", select: Sequence[int] | None = None,
            recover: Sequence[int] | None = None, loads: Mapping[str, ArrayLike] | None = None,
-           residual_modes: bool = False, *, judged: bool = False, factor: Factor | None = None,
+           residual_modes: bool = False, *,
+           paths: Mapping[str, str | Sequence[int] | PathLoads] | None = None,
+           judged: bool = False, factor: Factor | None = None,
            progress: Callable[[str], Any] | bool | None = None) -> ReducedBody:
     """Superelement of an FE model by one of four methods; see `sebody.reduction.methods`.
 
@@ -87,6 +90,11 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     residual_modes : bool
         For 'craig-bampton' and 'guyan': internal modes that make the static response to every
         load exact.
+    paths : mapping of str to str, sequence of int or PathLoads, optional
+        For 'craig-bampton' and 'guyan', paths by name that nodes of a model will slide along:
+        node sets, or FE nodes in order. Static modes of unit loads at 7 of the nodes of each, in
+        both directions across, are further internal modes, or as `PathLoads` says; the shapes at
+        all its nodes are kept, and `Model.path` takes the name for its `nodes`.
     judged : bool
         Note up to which frequencies the modes are good ('craig-bampton', 'guyan', 'rubin').
     factor : function, optional
@@ -108,19 +116,21 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
     ------
     InputError
         Unknown or repeated interfaces, blocks that nodes do not have, more modes than there are,
-        a boundary that leaves a mechanism inside, or loads of another length.
+        a boundary that leaves a mechanism inside, loads of another length, or paths that are none.
     """
     inputs.instance(fe_model, "fe_model", FEModel, "give an FEModel")
     if factor is not None:
         inputs.function(factor, "factor", "give a function of a sparse matrix, or leave it out")
     method = inputs.choice(method, "method", METHODS)
-    _check_options(method, modes, select, inputs.flag(residual_modes, "residual_modes"))
+    residual_modes = inputs.flag(residual_modes, "residual_modes")
+    _check_options(method, modes, select, residual_modes, bool(paths))
     watch = watching(progress)
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)
+    loaded = loaded_paths(fe_model, paths, edge.nodes)
     matrices, interior, static = clamped(fe_model, edge, watch, method, factor)
     notes = [f"{method} from {matrices[0].shape[0]} DOFs, factored by {interior.factored_by}",
-             *edge.notes]
+             *edge.notes, *(one.note for one in loaded.values())]
     free = None
     if method in ("craig-bampton", "guyan"):
         if isinstance(modes, Accuracy):
@@ -138,8 +148,10 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         count = len(component.omega_squared if free is None else free.squares)
         notes.append(_of_equal_frequency(count, left_out))
     forces = edge.ties.gather(forces)
-    if residual_modes:
-        component = with_residual_modes(component, interior, matrices[1], forces)
+    answered = [*[forces] * residual_modes,
+                *(edge.ties.gather(one.forces) for one in loaded.values())]
+    if answered:
+        component = with_residual_modes(component, interior, matrices[1], np.hstack(answered))
     reduced = component.project(*matrices)
     if method == "macneal":
         component, reduced = _without_residual_mass(component, reduced[0], free, matrices[1])
@@ -159,6 +171,7 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
                 reached(static, interior, matrices, modes))
         body = replace(body, notes=(*body.notes,
                                     f"accuracy: {told}" + _WITH_FACES * edge.stiffened))
+    body = replace(body, paths={name: one.nodes for name, one in loaded.items()})
     watch.close()
     return body if recover is None else body.recovering(recover)
 
@@ -197,10 +210,13 @@ def _of_equal_frequency(modes: int, left_out: int) -> str:
 
 
 def _check_options(method: str, modes: int | Accuracy, select: Sequence[int] | None,
-                   residual_modes: bool) -> None:
+                   residual_modes: bool, paths: bool) -> None:
     if residual_modes and method not in ("craig-bampton", "guyan"):
         raise InputError("residual_modes is for methods 'craig-bampton' and 'guyan', whose modes "
                          f"are of the clamped body; {method!r} has residual shapes of its own")
+    if paths and method not in ("craig-bampton", "guyan"):
+        raise InputError("paths are for methods 'craig-bampton' and 'guyan', whose internal modes "
+                         f"may be static ones of the clamped body; {method!r} has others")
     if method == "guyan" and (isinstance(modes, Accuracy) or inputs.integer(modes, "modes") != 0):
         raise InputError(f"modes is {inputs.shown(modes)}, but method 'guyan' has none: leave it "
                          "out, or choose another method")

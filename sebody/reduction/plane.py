@@ -121,7 +121,8 @@ def _even_body(body: ReducedBody, kept: NDArray, odd: tuple[str, ...],
         notes=(*body.notes, "motion in a plane of symmetry"),
         loads={name: kept.T @ body.loads[name] for name in even},
         outputs={name: matrix @ kept for name, matrix in body.outputs.items()},
-        missing=missing, materials=body.materials, units=body.units, base=body.base)
+        missing=missing, materials=body.materials, units=body.units, base=body.base,
+        paths=body.paths if recovery else {})
 
 
 def _check_matrix(what: str, matrix: NDArray, signs: NDArray, names: list[str]) -> None:

@@ -75,6 +75,10 @@ class Recovery:
         place = int(np.searchsorted(self.nodes, number))
         return place < len(self.nodes) and self.nodes[place] == number
 
+    def place(self, number: int) -> int:
+        """Place of a node among those that are kept, by its number in the FE model."""
+        return number if self.nodes is None else int(np.searchsorted(self.nodes, number))
+
     def number(self, place: int) -> int:
         """Number in the FE model of a node, by its place among those that are kept."""
         return int(place) if self.nodes is None else int(self.nodes[place])

@@ -1,9 +1,9 @@
 """Checks of the shapes of an FE model against the body that they belong to."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
@@ -69,6 +69,31 @@ def _check_nodes(recovery: Recovery, count: int) -> None:
         lines += len(nodes) * (kind == "line")
     if recovery.outlines is not None:
         _check("outlines", recovery.outlines, (lines, None, 3))
+
+
+def checked_paths(paths: Mapping[str, ArrayLike], recovery: Recovery | None
+                  ) -> dict[str, NDArray]:
+    """Paths by name, as new arrays of FE nodes.
+
+    Raises
+    ------
+    InputError
+        Names that are no texts, fewer than two nodes, or nodes that the recovery does not have.
+    """
+    remedy = "give a dict of FE nodes in order by name"
+    checked = {}
+    for name, nodes in inputs.mapping(paths, "paths", remedy).items():
+        what = f"path {inputs.name(name, 'name of a path')!r}"
+        numbers = [inputs.integer(node, f"{what}: a node", least=0)
+                   for node in inputs.items(nodes, f"{what}: nodes", remedy)]
+        if len(numbers) < 2:
+            raise InputError(f"{what} has {len(numbers)} FE nodes: give two at least")
+        unknown = [node for node in numbers if recovery is None or not recovery.has(node)]
+        if unknown:
+            raise InputError(f"{what} has the FE node {unknown[0]}, whose shapes the body does not "
+                             "have: keep the recovery of its nodes")
+        checked[name] = np.array(numbers)
+    return checked
 
 
 def _check_stress(name: str, one: object, count: int, dofs: int, n: int) -> None:

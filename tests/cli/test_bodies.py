@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from malformed.fe_files import calculix, substructure
+from malformed.fe_files import BLOCK, LABELS, calculix, substructure
 from malformed.file_cases import replaced
 from scipy.linalg import eigh
 
@@ -41,6 +41,38 @@ def test_as_many_modes_as_needed(tmp_path, capsys):
                            "--accuracy chooses the number of modes: leave out --modes")):
         assert main(["import", str(path), *FACES, *options, "--output", str(body)]) == 2
         assert said in capsys.readouterr().err
+
+
+def test_paths(tmp_path, capsys):
+    """An edge along the block, whose nodes are found by the name of their set."""
+    path, body = calculix(tmp_path), tmp_path / "body.npz"
+    edge = np.flatnonzero((BLOCK.coordinates[:, 1:] == 1.0).all(axis=1))
+    rail = [int(LABELS[node]) for node in edge]
+    replaced("se.inp", "*NSET, NSET=NONE", "*NSET, NSET=Rail\n"
+             + ", ".join(map(str, rail[::-1])) + "\n*NSET, NSET=NONE")(tmp_path)
+    command = ["import", str(path), *FACES, "--output", str(body)]
+    assert main([*command, "--path", "rail:z:2", "--modes", "1", "--lean"]) == 0
+    assert "path 'rail': 4 nodes from node" in capsys.readouterr().out
+    made = load_body(body)
+    assert made.modes == 3 and made.recovery.labels[np.searchsorted(
+        made.recovery.nodes, made.paths["rail"])].tolist() == rail[::-1]
+    assert len(made.recovery.nodes) == 4 and not made.recovery.cells
+    assert main([*command, "--path", "RAIL"]) == 0 and load_body(body).modes == 4
+    body.unlink()
+    capsys.readouterr()
+    for options, told in (
+            (["--path", "RAIL:w"], "path is 'RAIL:w': write the name of a node set, SET:x"),
+            (["--path", "RAIL:z:0"], "path 'RAIL': number of loads is 0"),
+            (["--path", "RIAL"], "path 'RIAL': node set 'RIAL' is unknown: known are"),
+            (["--path", "EDGE"], "path 'EDGE': interfaces hold all its nodes"),
+            (["--path", "RAIL", "--path", "RAIL"], "path 'RAIL' is given twice"),
+            (["--path", "RAIL", "--method", "rubin", "--modes", "2"],
+             "paths are for methods 'craig-bampton' and 'guyan'")):
+        assert main([*command, *options]) == 2
+        assert told in capsys.readouterr().err and not body.exists()
+    assert main(["import", str(substructure(tmp_path)), "--path", "RAIL", "--output", str(body)]
+                ) == 2
+    assert "holds matrices that are reduced already, of which nothing" in capsys.readouterr().err
 
 
 def test_a_body_with_a_defect(tmp_path, capsys):

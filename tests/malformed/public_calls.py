@@ -261,7 +261,7 @@ REDUCTION = {
     "reduce": Call(reduction.reduce, lambda: {
         "fe_model": beam(), "boundary": {0: "full", 4: "full"}, "modes": 1,
         "method": "craig-bampton", "select": None, "recover": None, "loads": None,
-        "residual_modes": False}),
+        "residual_modes": False, "paths": {"rail": [0, 1, 2, 3, 4]}}),
     "reduce_model": Call(reduction.reduce_model, lambda: {
         "run_or_model": two_beams(), "interfaces": ("a", "c"), "modes": 1, "preload": True}),
     "craig_bampton": Call(reduction.craig_bampton, lambda: {
