@@ -123,7 +123,8 @@ def reduce(fe_model: FEModel, boundary: Items, modes: int | Accuracy = 0,
         inputs.function(factor, "factor", "give a function of a sparse matrix, or leave it out")
     method = inputs.choice(method, "method", METHODS)
     residual_modes = inputs.flag(residual_modes, "residual_modes")
-    _check_options(method, modes, select, residual_modes, bool(paths))
+    _check_options(method, modes, select, residual_modes,
+                   isinstance(paths, Mapping) and bool(paths))
     watch = watching(progress)
     names, forces = fe_loads(loads, fe_model.stiffness.shape[0])
     edge = boundary_of(fe_model, boundary)

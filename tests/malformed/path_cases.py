@@ -72,7 +72,9 @@ CASES = {
                ("place", lacks_turn[1]), ("turn", lacks_place[1]),
                (None, f"{WHERE} is on the ground: give its points="),
                (["beam", "short", "mast"], f"{WHERE} has 3 superelements and nodes= 2")],
-        "nodes": [*are(f"{WHERE}: nodes", 3, "ab", 2.5), *have("give two at least", [], ["a"], [0]),
+        "nodes": [*are(f"{WHERE}: nodes", 3, 2.5),
+                  ("ab", f"{WHERE}: path of superelement 'beam', 'ab' is unknown: the body has "
+                   "none: import it with --path"), *have("give two at least", [], ["a"], [0]),
                   *have("node 'far' is unknown", ["a", "far"]),
                   (["a", "c"], f"{WHERE}: node 'c' is no node of superelement 'beam'"),
                   (["a", "a"], f"{WHERE}: nodes= are 'a', 'a': give two nodes of the model"),
