@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.csgraph import minimum_spanning_tree
-from scipy.spatial.distance import cdist
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
@@ -137,6 +135,9 @@ def _in_line(model: FEModel, what: str, nodes: list[int]) -> list[int]:
 
     It begins at that end which comes first in the set.
     """
+    from scipy.sparse.csgraph import minimum_spanning_tree      # 30 ms that other bodies need not
+    from scipy.spatial.distance import cdist
+
     apart = cdist(model.coordinates[nodes], model.coordinates[nodes])
     if (apart[~np.eye(len(nodes), dtype=bool)] == 0.0).any():
         k, m = np.argwhere((apart == 0.0) & ~np.eye(len(nodes), dtype=bool))[0]
