@@ -135,7 +135,7 @@ def _in_line(model: FEModel, what: str, nodes: list[int]) -> list[int]:
 
     It begins at that end which comes first in the set.
     """
-    from scipy.sparse.csgraph import minimum_spanning_tree      # 30 ms that other bodies need not
+    from scipy.sparse.csgraph import minimum_spanning_tree  # 30 ms that other bodies need not
     from scipy.spatial.distance import cdist
 
     apart = cdist(model.coordinates[nodes], model.coordinates[nodes])
