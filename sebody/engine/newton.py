@@ -181,7 +181,8 @@ def _verdict(system, state, scheme, sound, iteration, norm, left_norm, target):
     unsettled = sound & (rate / (1.0 - rate) * left_norm > target)
     verdict = either(unsettled, GO_ON, CONVERGED)
     if any_true(unsettled):
-        verdict = _next_action(system, state, unsettled, iteration, rate, norm, left_norm, target)
+        verdict = _next_action(system, state, verdict, unsettled, iteration, rate, norm, left_norm,
+                               target)
     converged = sound & (verdict == CONVERGED)
     if state.control.regularized == 1:
         ended = sound & ((verdict == CONVERGED) | (verdict == GIVE_UP))
@@ -194,10 +195,9 @@ def _verdict(system, state, scheme, sound, iteration, norm, left_norm, target):
 
 
 @compiled(forceinline=True)
-def _next_action(system, state, unsettled, iteration, rate, norm, left_norm, target):
-    """The verdict where the correction has not converged; CONVERGED of members that have."""
+def _next_action(system, state, verdict, unsettled, iteration, rate, norm, left_norm, target):
+    """The verdict, with that of what has not converged put in."""
     fresh, rest = state.control.fresh, MAX_ITERATIONS - iteration - 1
-    verdict = either(unsettled, GO_ON, CONVERGED)
     if rest <= 0:
         verdict = either(unsettled, GIVE_UP, verdict)
     elif iteration > 0:
@@ -216,15 +216,18 @@ def _next_action(system, state, unsettled, iteration, rate, norm, left_norm, tar
 @compiled(forceinline=True)
 def _left(system, state, rest, rate, norm):
     """Norm after as many further corrections as the next matrix costs, or as are allowed."""
-    few = many = norm
-    if state.inverse.size > 1:
-        for _ in range(min(int(ROTATED_COST), rest)):
-            few = few * rate
-    else:
-        few = few * rate * (math.sqrt(rate) if rest > 1 else 1.0)   # ROTATED_BLOCKS_COST
-    for _ in range(min(int(REFACTORIZATION_COST), rest)):
-        many = many * rate
+    cost = ROTATED_COST if state.inverse.size > 1 else ROTATED_BLOCKS_COST
+    few = norm_after(norm, rate, min(cost, rest))
+    many = norm_after(norm, rate, min(REFACTORIZATION_COST, rest))
     return either(state.control.fresh < system.linked[0], few, many)
+
+
+@compiled(forceinline=True)
+def norm_after(norm, rate, corrections):
+    """Norm after some corrections, a multiple of a half, that shrink it by the same rate."""
+    for _ in range(int(corrections)):
+        norm = norm * rate
+    return norm if corrections == int(corrections) else norm * math.sqrt(rate)
 
 
 @compiled

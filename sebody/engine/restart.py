@@ -36,8 +36,8 @@ from sebody.engine.evaluate import (
 from sebody.engine.kept_factors import exchange, give_back, keep_matrices_of_bodies
 from sebody.engine.links import place_dependent
 from sebody.engine.matrix import solve
-from sebody.engine.newton import FASTEST, HUGE, REFACTORIZATION_COST
-from sebody.engine.selection import either
+from sebody.engine.newton import FASTEST, HUGE, REFACTORIZATION_COST, norm_after
+from sebody.engine.selection import any_true, either
 from sebody.engine.state import (
     AHEAD,
     ASKED,
@@ -215,9 +215,7 @@ def correct(system, state, going):
             + either(stays, STIFF, 1.0) * _rounding(system, state))
     settles = (rate <= POOR) & (max(rate, FASTEST) / (1.0 - rate) * norm <= none)
     verdict = either((norm <= none) | (old & settles), DONE, SOLVE)
-    many = norm     # what as many corrections as new factors cost leave
-    for _ in range(int(REFACTORIZATION_COST)):
-        many = many * rate
+    many = norm_after(norm, rate, REFACTORIZATION_COST)
     renew = going & (verdict == SOLVE) & (poor | (old & (many > none)))
     control.wanted = either(renew, EVALUATED, control.wanted)
     ended = (verdict == SOLVE) & ((control.iteration >= MOST_CORRECTIONS) | (
@@ -227,9 +225,9 @@ def correct(system, state, going):
         # something without mass
         gap = (verdict == DONE) & (left > n * norm + CONTRADICTION * size)
         verdict = either(gap, FAILED, verdict)
-    # frames of bodies are found to rounding, and so are their forces
-    exact = norm <= clock.floor * _fastest(system, state)
-    verdict = either(ended, either(exact, DONE, FAILED), verdict)
+    if any_true(ended):     # frames of bodies are found to rounding, and so are their forces
+        exact = norm <= clock.floor * _fastest(system, state)
+        verdict = either(ended, either(exact, DONE, FAILED), verdict)
     return either(norm < HUGE, verdict, FAILED)
 
 

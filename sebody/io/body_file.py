@@ -157,9 +157,9 @@ def body_parts(body: ReducedBody) -> dict[str, Any]:
 def lean(file: BodyFile) -> BodyFile:
     """A body file without the shapes and the mesh of the FE model, but for those of paths."""
     missing = {**file.parts.get("missing", {}), "stresses": _LEAN}
-    recovery, paths = file.parts.get("recovery"), file.parts.get("paths", {}).values()
+    recovery = file.parts.get("recovery")
     if recovery is not None:
-        kept = [recovery.place(int(node)) for nodes in paths for node in nodes]
+        kept = recovery.places(file.parts.get("paths", {}))
         recovery = replace(recovery.restricted(np.array(kept)), cells=(), outlines=None, stress=(),
                            static=None) if kept else None
     return replace(file, parts={**file.parts, "recovery": recovery, "missing": missing})

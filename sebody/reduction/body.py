@@ -311,7 +311,7 @@ class ReducedBody:
                    for node in inputs.items(nodes, "recover", remedy)]
         if not numbers:
             raise InputError(f"recover names no node: {remedy}")
-        numbers += [self.recovery.place(int(node)) for path in self.paths.values() for node in path]
+        numbers += self.recovery.places(self.paths)
         return replace(self, recovery=self.recovery.restricted(np.array(numbers)))
 
     def damped(self, ratio: float | Sequence[float] = 0.0, *, mass: float = 0.0,

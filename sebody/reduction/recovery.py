@@ -1,5 +1,6 @@
 """Displacements inside a body from its reduced coordinates."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -72,12 +73,16 @@ class Recovery:
         """Tell whether the node of this number in the FE model is among those that are kept."""
         if self.nodes is None:
             return 0 <= number < len(self.coordinates)
-        place = int(np.searchsorted(self.nodes, number))
+        place = self.place(number)
         return place < len(self.nodes) and self.nodes[place] == number
 
     def place(self, number: int) -> int:
         """Place of a node among those that are kept, by its number in the FE model."""
         return number if self.nodes is None else int(np.searchsorted(self.nodes, number))
+
+    def places(self, paths: Mapping[str, NDArray]) -> list[int]:
+        """Places of the nodes of paths among those that are kept."""
+        return [self.place(int(node)) for nodes in paths.values() for node in nodes]
 
     def number(self, place: int) -> int:
         """Number in the FE model of a node, by its place among those that are kept."""

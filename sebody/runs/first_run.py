@@ -60,8 +60,7 @@ _callee = way().part_of_callers
 LOOP = {        # callees of the loop, which waits for them
     "forces in the loop": Part(_callee(evaluate.assemble), "whole whole system state vector", 0.6),
     "output": Part(_callee(step_control.write_between), "system state record whole", 1.2),
-    "correction": Part(_callee(newton.correct), "system state scheme flag whole flag",
-                       1.1),
+    "correction": Part(_callee(newton.correct), "system state scheme flag whole flag", 1.1),
     "evaluation": Part(_callee(loop._evaluate), "system state scheme whole flag", 0.8,
                        ("forces in the loop",)),
     "conclusion": Part(_callee(loop._conclude), "system state record scheme whole", 1.4),
