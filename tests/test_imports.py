@@ -73,7 +73,7 @@ PICTURES = {"plots", "control_figures", "frequency_pictures", "orbit_pictures", 
 FORMULAS = {"derivatives"}      # that may import SymPy, once it is asked for
 EXTRAS = {"peer", "peer_models", "peer_mechanisms"}     # that may import Exudyn
 # modules of extras by folder, and what they may import
-OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_apart": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
+OTHERS = {"io/nastran": {"pyyeti"}, "io/ansys_process": {"ansys"}, "io/ngsolve_space": {"ngsolve"},
           "results/hdf5": {"h5py"}, "basics/hdf5": {"h5py"},
           "results/dataframes": {"pandas", "xarray"}, "results/hot_spots": {"pandas"},
           "results/vtk_series": {"meshio"}, "pictures/film": {"PIL", "imageio"},

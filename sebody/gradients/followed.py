@@ -33,7 +33,6 @@ from sebody.contract.read_numbers import (
 )
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.energy_rows import EnergyRows, energy_rows, set_energy_rows
-from sebody.gradients.held_states import put_state
 from sebody.gradients.history import History
 from sebody.gradients.laws import remembering
 from sebody.gradients.linear import Linear
@@ -41,6 +40,7 @@ from sebody.gradients.link_products import place_weights, pull_back_bars
 from sebody.gradients.motion_rows import add_motion_rows, motion_rows, set_motion_rows
 from sebody.gradients.power_rows import power_rows, set_power_rows
 from sebody.gradients.products import Products, prepare, turn
+from sebody.gradients.recorded_states import put_state
 from sebody.kernels.tapes import play_back
 from sebody.model.parts import Superelement
 from sebody.quantities.algebra import dot, times

@@ -5,8 +5,8 @@ Equations as numbered in the README of this folder.
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.evaluate import to_body_axes
-from sebody.gradients.columns import turn
 from sebody.gradients.products import along
+from sebody.gradients.recursion import turn
 from sebody.gradients.step_equation import ASKED, DONE, FAILED, begin, conclude, solve
 
 

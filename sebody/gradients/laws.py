@@ -30,8 +30,8 @@ from sebody.contract.layout import (
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.system import System
 from sebody.gradients.element_products import ROWS, run_element
-from sebody.gradients.held_states import put_state
 from sebody.gradients.history import History
+from sebody.gradients.recorded_states import put_state
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.loader import element_kernel
 from sebody.model.parts import Element

@@ -26,8 +26,8 @@ from sebody.contract.layout import (
 )
 from sebody.engine.evaluate import run_kernels, sum_forces
 from sebody.engine.state import REASONS
-from sebody.gradients.held_states import put_state
 from sebody.gradients.links import Followers
+from sebody.gradients.recorded_states import put_state
 from sebody.runs.simulation import Simulation
 
 DENSE = 160         # most unknowns of full matrices: beyond, sparse ones are quicker

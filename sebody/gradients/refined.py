@@ -9,12 +9,12 @@ from sebody.basics.errors import InputError
 from sebody.engine.state import Scheme
 from sebody.gradients.backward_steps import backward
 from sebody.gradients.coefficients import Coefficients
-from sebody.gradients.columns import FRESH, GUESSES, INVERSES, SPENT, Columns, put
 from sebody.gradients.factors import REDUNDANT, Scales
 from sebody.gradients.forward_steps import forward
 from sebody.gradients.history import History
 from sebody.gradients.linear import Linear
 from sebody.gradients.products import Products
+from sebody.gradients.recursion import FRESH, GUESSES, INVERSES, SPENT, Columns, put
 from sebody.gradients.step_equation import DONE, FAILED, invert_now, matrix
 
 FINE = 1e-12            # tolerance of runs whose steps are refined to rounding

@@ -19,8 +19,8 @@ from scipy.linalg import eigh
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, LimitWarning
+from sebody.gradients.changed_residuals import ChangedResiduals, port_values
 from sebody.gradients.course import Course
-from sebody.gradients.held_residuals import HeldResiduals, port_values
 from sebody.gradients.history import RESTART, History
 from sebody.gradients.parameters import Column
 from sebody.gradients.start_rates import fitted_rates
@@ -82,7 +82,7 @@ class Slopes:
                  objectives: Callable[[Simulation, NDArray], NDArray],
                  course: Course | None = None):
         self.model, self.run, self.history, self.objectives = model, run, history, objectives
-        self.held = HeldResiduals(run, history, course)
+        self.held = ChangedResiduals(run, history, course)
 
     def of(self, column: Column) -> Slope:
         """Derivatives by a number of a parameter.

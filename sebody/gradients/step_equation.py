@@ -14,8 +14,8 @@ from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK
 from sebody.engine.evaluate import to_body_axes
 from sebody.engine.inverse import invert
-from sebody.gradients.columns import FRESH, GUESSES, PRODUCTS, SPENT, put, turn
 from sebody.gradients.products import along, transposed
+from sebody.gradients.recursion import FRESH, GUESSES, PRODUCTS, SPENT, put, turn
 
 DONE = -1               # of recursions, in place of the number of an event that asks for an inverse
 FAILED = -2             # an evaluation, or refinement with the inverse of the step itself

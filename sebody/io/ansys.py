@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 
 from sebody.basics.errors import InputError
-from sebody.basics.files.apart import read_apart
+from sebody.basics.files.own_process import read_in_own_process
 from sebody.basics.files.reading import existing
 from sebody.fem.model import FEModel
 from sebody.io.reading import Reading
@@ -94,7 +94,7 @@ def _mesh(path: Path) -> dict[str, np.ndarray]:
 
 def _read(path: Path, what: str) -> dict[str, np.ndarray]:
     existing(path, "file", _REMEDY)
-    return read_apart("sebody.io.ansys_apart", path, what, remedy=_REMEDY)
+    return read_in_own_process("sebody.io.ansys_process", path, what, remedy=_REMEDY)
 
 
 def _sets(mesh: dict[str, np.ndarray], labels: np.ndarray) -> dict[str, list[int]]:

@@ -20,7 +20,7 @@ from sebody.basics.errors import InputError
 from sebody.basics.files import check_target, replacing
 from sebody.basics.files.reading import existing
 from sebody.basics.files.reading import text as read_text
-from sebody.io.held import AXES, Block, HeldBody, columns
+from sebody.io.grounded import AXES, Block, HeldBody, columns
 from sebody.io.load_series import LoadSeries
 from sebody.io.reading import Reading
 from sebody.io.text import fault

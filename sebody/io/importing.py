@@ -16,7 +16,7 @@ from sebody.basics.units import parsed_units
 from sebody.fem.model import FEModel
 from sebody.io.body_file import TARGET, BodyFile, body_parts, write_body_file
 from sebody.io.damping import with_damping
-from sebody.io.held import HeldBody
+from sebody.io.grounded import HeldBody
 from sebody.io.interfaces import Interface, parsed, tied
 from sebody.io.modal import ModalBody
 from sebody.io.paths import named_sets, parsed_paths

@@ -5,7 +5,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from sebody.fem.model import FEModel
-from sebody.io.held import HeldBody
+from sebody.io.grounded import HeldBody
 from sebody.io.modal import ModalBody
 
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.model.apart import has_forces, take_apart
 from sebody.model.arguments import chosen_name
+from sebody.model.joint_forces import give_forces, has_forces
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Attachment, Axes, Element, Joint, positions, rotations
 
@@ -121,7 +121,7 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
         constants |= _taken(what, joint, kind, takes)
     name = chosen_name(model, name, what.replace("'", ""))
     if reads and not has_forces(joint):
-        take_apart(model, joint)
+        give_forces(model, joint)
     made = []
     for k, (attachments, own) in enumerate(parts, 1):
         label = f"{name} {k}" if len(parts) > 1 else name

@@ -30,7 +30,6 @@ from sebody.runs import user_faults
 from sebody.runs.failures import explained, of_start
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import take
-from sebody.runs.helpers import TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
@@ -43,6 +42,7 @@ from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import kicks, start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.teeth import Gears, teeth_remarks
+from sebody.runs.threads import TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 from sebody.runs.variable_steps import FIRST_STEP, begin_steps, natural_step
 

@@ -7,7 +7,7 @@ import pytest
 from scipy import sparse
 from scipy.io import mmwrite
 
-from sebody.io.market_text import parsed
+from sebody.io.matrix_market import parsed
 
 A = np.array([[4.0, -1.0, 0.5], [-1.0, 3.0, 0.25], [0.5, 0.25, 2.0]])
 B = np.arange(9.0).reshape(3, 3)

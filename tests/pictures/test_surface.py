@@ -17,11 +17,10 @@ from sebody.fem import (
     tube,
 )
 from sebody.fem.cells import EDGES, FACES, faces_of
-from sebody.pictures.beam_surface import _cap
 from sebody.pictures.drawn_bodies import vertices
 from sebody.pictures.scene import scenery
 from sebody.pictures.skin import lattice, outer_faces, skin
-from sebody.pictures.surface import box, surface_of
+from sebody.pictures.surface import _cap, box, surface_of
 from sebody.pictures.surface_parts import folded
 from sebody.reduction import RigidFace, craig_bampton
 

@@ -16,7 +16,7 @@ from sebody.assembly.allocation import allocate
 from sebody.engine.mailbox import CALL
 from sebody.engine.matrix import refactorize, solve, sum_matrices
 from sebody.engine.state import ROTATED
-from sebody.runs import helpers, simulation
+from sebody.runs import simulation, threads
 from sebody.scenes import chain
 
 LINKS = 100     # with 1500 unknowns, two shares of 64 bodies
@@ -195,7 +195,7 @@ def test_short_pieces_have_helpers_where_they_take_long(monkeypatch):
 
     def counted(*arguments):
         used.append(arguments)
-        return helpers.helping(*arguments)
+        return threads.helping(*arguments)
     monkeypatch.setattr(simulation, "helping", counted)
     model = MODELS["chain"]()
     model.actuator("push", node=list(model.nodes.values())[-1], direction=(0.0, 1.0, 0.0))

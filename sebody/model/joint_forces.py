@@ -16,7 +16,7 @@ def has_forces(joint: Joint) -> bool:
     return any(c.kind.removeprefix("planar_") in FORCES for c in joint.constraints)
 
 
-def take_apart(model: Mechanism, joint: Joint) -> None:
+def give_forces(model: Mechanism, joint: Joint) -> None:
     """Give a joint equations for the position it shares or fixes.
 
     Raises

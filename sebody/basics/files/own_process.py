@@ -16,7 +16,8 @@ MOST = 3600         # seconds
 SAID = 3            # exit code of a reader that has said what is wrong
 
 
-def read_apart(module: str, path: Path, *arguments: str, remedy: str) -> dict[str, NDArray]:
+def read_in_own_process(module: str, path: Path, *arguments: str, remedy: str
+                        ) -> dict[str, NDArray]:
     """Arrays that a module makes of a file, called by ``python -m`` with the file and a target.
 
     Raises
@@ -44,7 +45,7 @@ def read_apart(module: str, path: Path, *arguments: str, remedy: str) -> dict[st
 
 
 def serve(read: Callable[..., Mapping[str, NDArray]]) -> None:
-    """Do what `read_apart` asks for, in the other process.
+    """Do what `read_in_own_process` asks for, in the other process.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.basics.files.apart import serve
+from sebody.basics.files.own_process import serve
 
 
 def read(path: str, what: str) -> dict[str, NDArray]:

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.arrays import Arrays
-from sebody.gradients.held_states import put_state
 from sebody.gradients.products import prepare
+from sebody.gradients.recorded_states import put_state
 from sebody.kernels.rotations import exp_map, tangent_operator
 
 PRODUCTS, INVERSES, SPENT, FRESH, GUESSES = range(5)    # places in `Columns.counts`

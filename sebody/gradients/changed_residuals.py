@@ -1,4 +1,4 @@
-"""Residuals of all events of a run by a changed model, in the states of the run, which are held.
+"""Residuals of all events of a run by a changed model, in the recorded states of the run.
 
 Motions that are prescribed, and positions that are fixed, are those of the changed model.
 """
@@ -131,7 +131,7 @@ class Held(NamedTuple):
     forces: float           # largest of an element or of an inertia, of which residuals are sums
 
 
-class HeldResiduals:
+class ChangedResiduals:
     """Residuals of changed models in the states of a run.
 
     Parameters
