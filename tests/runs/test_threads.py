@@ -16,7 +16,8 @@ from sebody.assembly.allocation import allocate
 from sebody.engine.mailbox import CALL
 from sebody.engine.matrix import refactorize, solve, sum_matrices
 from sebody.engine.state import ROTATED
-from sebody.runs import simulation, threads
+from sebody.runs import simulation
+from sebody.runs import threads as sharing
 from sebody.scenes import chain
 
 LINKS = 100     # with 1500 unknowns, two shares of 64 bodies
@@ -151,7 +152,7 @@ def test_more_threads_than_processors_finish():
 
 
 def test_helpers_that_never_come_are_not_waited_for(monkeypatch):
-    monkeypatch.setattr(helpers, "_help", lambda *arguments: None)
+    monkeypatch.setattr(sharing, "_help", lambda *arguments: None)
     assert np.array_equal(rows(MODELS["chain"](), 2)[0], rows(MODELS["chain"](), 1)[0])
 
 
@@ -209,7 +210,7 @@ def test_short_pieces_have_helpers_where_they_take_long(monkeypatch):
     expected = run(1)
     assert not used
     assert all(map(np.array_equal, run(2), expected)) and not used      # two steps of 1500 unknowns
-    monkeypatch.setattr(helpers, "WORTH_IT", 2000)
+    monkeypatch.setattr(sharing, "WORTH_IT", 2000)
     assert all(map(np.array_equal, run(2), expected)) and len(used) == 4
     assert threading.active_count() == 1
 
