@@ -196,7 +196,7 @@ def test_short_pieces_have_helpers_where_they_take_long(monkeypatch):
 
     def counted(*arguments):
         used.append(arguments)
-        return threads.helping(*arguments)
+        return sharing.helping(*arguments)
     monkeypatch.setattr(simulation, "helping", counted)
     model = MODELS["chain"]()
     model.actuator("push", node=list(model.nodes.values())[-1], direction=(0.0, 1.0, 0.0))
