@@ -33,6 +33,8 @@ class Start(NamedTuple):
     changed: dict[str, float]       # DOF blocks whose velocity was solved for, with its change
     redundant: tuple[str, ...]      # joints with constraints that others contain
     shared: tuple[str, ...] = ()    # joints whose multipliers are not unique at the start
+    untaken: tuple[str, ...] = ()   # what a start from the state of another model has left out
+    lost: float = 0.0       # kinetic energy that fitting the velocities of that state took
 
 
 @dataclass(eq=False, repr=False)

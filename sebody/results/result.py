@@ -310,6 +310,10 @@ class Result(Recording):
             lines.append("solved for           initial velocity of "
                          + ", ".join(f"{name} (by {change:.3g})"
                                      for name, change in self.start.changed.items()))
+        if self.start and self.start.untaken:
+            lines += [f"not taken over       {', '.join(self.start.untaken)}",
+                      f"energy lost          {self.start.lost:.6g} at the start, by the impulse "
+                      "that makes velocities fit the joints"]
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "

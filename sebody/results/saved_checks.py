@@ -78,8 +78,9 @@ def check_notes(notes: Mapping[str, Any]) -> None:
         if not _fits(notes[name], hint):
             raise ValueError(f"it has {inputs.shown(notes[name])} for its {name}")
     start = notes["start"]
-    if start and not (len(start) in (2, 3) and _fits(start[0], dict[str, float])    # older: 2
-                      and all(_fits(names, list[str]) for names in start[1:])):
+    if start and not (2 <= len(start) <= 5 and _fits(start[0], dict[str, float])    # older: 2, 3
+                      and all(_fits(names, list[str]) for names in start[1:4])
+                      and all(_fits(lost, float) for lost in start[4:])):
         raise ValueError(f"it has {inputs.shown(start)} for its start")
 
 

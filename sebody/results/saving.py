@@ -138,8 +138,9 @@ def _check_times(table: Table, rows: NDArray) -> None:
 
 def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray], model: Mechanism,
           numbering: Numbering) -> Any:
-    start = notes["start"] and Start(notes["start"][0], *map(tuple, notes["start"][1:]))
-    made = make(model, numbering, None, None, found["rows"], start=start,
+    start: list[Any] = [tuple(part) if isinstance(part, list) else part
+                        for part in notes["start"] or ()]
+    made = make(model, numbering, None, None, found["rows"], start=Start(*start) if start else None,
                 **{name: notes[name] for name in NOTES})
     made.warnings = tuple(made.warnings)
     sums = np.zeros((len(made.rows), numbering.total))

@@ -5,32 +5,41 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.contract.layout import RECORD
+from sebody.contract.layout import KINETIC, RECORD
 from sebody.engine.state import State
+from sebody.engine.system import System
 from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, coordinates, record_counts, stretch
+from sebody.results.postprocessing import energies
 from sebody.results.result import Result
+from sebody.runs.taken_over import have_same_order, taken_over
 
 APART = 1e-8        # of the extent, or rad: by which fixed and driven coordinates may differ
+NOTHING: tuple[str, ...] = ()
 
 
-def take(model: Mechanism, numbering: Numbering, state: State, given: Result) -> None:
+def take(model: Mechanism, numbering: Numbering, state: State, given: Result) -> tuple[str, ...]:
     """Put positions, rotations and modes of the last state of a result in a state at t = 0.
 
-    Velocities are those of that state, too, but for those the model gives.
+    Velocities are those of that state, too, but for those the model gives. Of another model what
+    has the same name is taken over, see `taken_over`.
+
+    Returns
+    -------
+    tuple of str
+        What could not be taken over, in words.
 
     Raises
     ------
     InputError
-        No result, one of another model, or fixed and driven coordinates that are elsewhere.
+        No result, one of a model that has nothing in common with this one, or fixed and driven
+        coordinates that are elsewhere.
     """
     inputs.instance(given, "start", Result, "give the Result of an equilibrium or of a run")
-    if given.numbering.names != numbering.names or record_counts(given.numbering) != record_counts(
-            numbering):
-        raise InputError("start is a state of another model: give the Result of an equilibrium of "
-                         "this one, with the same nodes, bodies and joints")
-    row, parts = given.rows[-1], RECORD.slices(record_counts(numbering))
+    row, parts, left = given.rows[-1], RECORD.slices(record_counts(numbering)), NOTHING
+    if not have_same_order(model, numbering, given):
+        row, left = taken_over(model, numbering, state.now, given)
     q, R, v = (row[parts[name]].copy() for name in ("q", "R", "v"))
     for dof_block in model.dof_blocks():
         if dof_block not in numbering.dof_blocks:
@@ -51,6 +60,15 @@ def take(model: Mechanism, numbering: Numbering, state: State, given: Result) ->
     state.q[:], state.R[:], state.v[:] = q, R, v
     state.q_old[:], state.R_old[:], state.v_old[:] = q, R, v
     state.frames[:] = state.frames_old[:] = row[parts["frames"]]
+    return left
+
+
+def energy_lost(system: System, numbering: Numbering, state: State, before: NDArray) -> float:
+    """Kinetic energy that a change of velocities took, which were `before`."""
+    rows = np.stack([state.now, state.now])
+    rows[0, RECORD.slices(record_counts(numbering))["v"]] = before
+    had, has = energies(system, state, rows)[:, KINETIC]
+    return float(had - has)
 
 
 def _check_held(model: Mechanism, numbering: Numbering, state: State, q: NDArray,

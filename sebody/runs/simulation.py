@@ -29,7 +29,7 @@ from sebody.results.result import Result
 from sebody.runs import user_faults
 from sebody.runs.failures import explained, of_start
 from sebody.runs.first_run import prepare
-from sebody.runs.given_start import take
+from sebody.runs.given_start import energy_lost, take
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
@@ -72,7 +72,9 @@ class Simulation:
         many steps add up: see `simulate_within` for the error of the whole run.
     start : Result, optional
         State to start from in place of the model as built: of an `equilibrium`, at which nothing
-        rings, or the end of a run. Initial velocities that the model gives stay.
+        rings, or the end of a run. Initial velocities that the model gives stay. Of another model
+        what has the same names is taken over, and velocities that joints of this one do not allow
+        are changed by the impulse that conserves momentum; `summary` lists what was not taken over.
     threads : int
         Threads that share the steps of a large model, at most as many as there are free cores.
         Results are the same for any number of them, bit for bit. Models with less than 1000
@@ -147,9 +149,12 @@ class Simulation:
         model, numbering, state = self.model, self.numbering, self.state
         if self.tolerance is not None:
             state.clock.natural = natural_step(model, self.h, self.tolerance, self.plan)
-        if self.begun is not None:
-            take(model, numbering, state, self.begun)
+        untaken = () if self.begun is None else take(model, numbering, state, self.begun)
+        before = state.v.copy()
         self.start: Start = begin(model, self.system, numbering, state)
+        if untaken:
+            self.start = self.start._replace(
+                untaken=untaken, lost=energy_lost(self.system, numbering, state, before))
         refuse_contradicted(model, numbering, state)
         if self.begun is None:
             for key, message in start_remarks(model, numbering, state).items():

@@ -170,11 +170,6 @@ def test_ensembles_start_there(parameter):
 
 def test_what_is_no_start():
     model, rest = sagged()
-    other = bar()
-    other.node("more", (0.0, 0.0, 1.0), keeps="translation")
-    other.point_mass("more", "more", 1.0)
-    with pytest.raises(InputError, match="start is a state of another model: give the Result"):
-        simulate(other, 1e-3, 0.1, start=rest)
     with pytest.raises(InputError, match="start is 3: give the Result of an equilibrium or of a"):
         simulate(model, 1e-3, 0.1, start=3)
     shaken = bar()
