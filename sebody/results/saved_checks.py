@@ -23,6 +23,7 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names
 from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery
+from sebody.results.recording import Start
 
 NOTES = {"seconds": float, "failure": str, "warnings": list[str], "error": float | None,
          "all_seconds": float, "stability": str, "start": list | None,
@@ -78,9 +79,9 @@ def check_notes(notes: Mapping[str, Any]) -> None:
         if not _fits(notes[name], hint):
             raise ValueError(f"it has {inputs.shown(notes[name])} for its {name}")
     start = notes["start"]
-    if start and not (2 <= len(start) <= 5 and _fits(start[0], dict[str, float])    # older: 2, 3
+    if start and not (len(start) == len(Start._fields) and _fits(start[0], dict[str, float])
                       and all(_fits(names, list[str]) for names in start[1:4])
-                      and all(_fits(lost, float) for lost in start[4:])):
+                      and _fits(start[4], float)):
         raise ValueError(f"it has {inputs.shown(start)} for its start")
 
 
