@@ -1,11 +1,14 @@
 """What moves over bridges and cranes, against series and whole FE models."""
 
+import shutil
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from sebody import simulate
-from sebody.scenes import bridge
+from sebody.io import load_body
+from sebody.scenes import bridge, crane, crane_girder
 
 
 def crossing(times, sines=8):
@@ -93,3 +96,60 @@ def test_a_vehicle_on_three_spans():
         assert np.median(off[:, 5:]) < 2e-3
         assert off[:, 5:].max() < jump
     assert result["rear.way"] == pytest.approx(-5.0 + 25.0 * result.t, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def carried():
+    scene = crane.build()
+    return simulate(scene.model, scene.h, scene.t_end)
+
+
+def test_girders_sag_as_beams_and_share_the_load(carried):
+    """While the load hangs still: F a^2 b^2 / (3 E I L), and what shear adds, of both together;
+    the carriages at their ends twist, and let the less loaded one bear more.
+    """
+    still = np.searchsorted(carried.t, 1.4)
+    a, b, L = crane.START, crane.LENGTH - crane.START, crane.LENGTH
+    bend, area = 2.1e11 * crane.WIDTH * crane.HEIGHT**3 / 12, crane.WIDTH * crane.HEIGHT
+    sags = []
+    for side, part in (("left", 1 - crane.NEARER), ("right", crane.NEARER)):
+        force = carried[f"{side}.normal_force"][still]
+        assert force == pytest.approx(part * crane.LOAD * crane.G, rel=5e-3)
+        place = carried[f"{side} wheel.position.z"]
+        sags.append(place[0] - place[still])
+    sag = crane.LOAD * crane.G * (a * a * b * b / (3 * bend * L)
+                                  + a * b / L / (5 / 6 * area * 2.1e11 / 2.6))
+    assert sum(sags) == pytest.approx(sag, rel=5e-3)
+    assert 1.0 < sags[0] / sags[1] < 2.0
+
+
+def test_a_hanging_load_swings_as_under_a_rigid_crane(carried):
+    """Of the rope against the vertical, driven by the acceleration of the trolley."""
+    length = crane.ROPE
+
+    def pushed(t):
+        u = np.clip((t - crane.PICKED_UP) / crane.MOVED, 0.0, 1.0)
+        return crane.WAY / crane.MOVED**2 * (60 * u - 180 * u**2 + 120 * u**3)
+    found = solve_ivp(lambda t, z: (z[1], -(crane.G * np.sin(z[0]) + pushed(t) * np.cos(z[0]))
+                                    / length), (1.0, 10.0), (0.0, 0.0), t_eval=carried.t[200:],
+                      rtol=1e-7, atol=1e-9, max_step=0.05).y[0]
+    swing = carried["load.position.x"] - carried["left.way"]
+    assert swing[200:] == pytest.approx(length * np.sin(found), abs=2e-2)
+    assert np.ptp(swing[-400:]) > 2.0
+    # the engines give what load, wheels and frame take along x
+    masses = (("load", crane.LOAD), ("left wheel", crane.WHEEL), ("right wheel", crane.WHEEL))
+    pushed_by = carried["left engine.thrust"] + carried["right engine.thrust"]
+    taken = sum(mass * carried[f"{name}.acceleration.x"] for name, mass in masses)
+    taken += crane.TROLLEY * carried["trolley.acceleration.x"]
+    assert np.abs(pushed_by - taken).max() < 2e-2 * np.abs(taken).max()
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="needs ccx")
+def test_the_body_file_is_that_of_its_deck(tmp_path):
+    made = crane_girder.girder(crane_girder.write_matrices(tmp_path))
+    shipped = load_body(crane_girder.FILE)
+    for name in ("stiffness", "mass"):
+        one, other = getattr(made, name), getattr(shipped, name)
+        assert np.linalg.eigvalsh(one) == pytest.approx(np.linalg.eigvalsh(other), rel=1e-6,
+                                                        abs=1e-9 * np.abs(one).max())
+    assert made.paths["RAIL"].tolist() == shipped.paths["RAIL"].tolist()
