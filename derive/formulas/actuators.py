@@ -20,6 +20,7 @@ from sebody.derive.formulas.elements import (
     Block,
     Constant,
     Element,
+    amplitude,
     constant,
     element,
     position,
@@ -69,8 +70,14 @@ def line(planar: bool) -> Way:
     return Way(blocks, [], differential(sp.sqrt(d.dot(d)), varied(blocks)), sp.S.Zero)
 
 
+def way(planar: bool) -> Way:
+    """Way along a path, which is a coordinate: the same in a plane and in space."""
+    own = amplitude(Space(planar), "a")
+    return Way((own,), [], own.direction.symbols[0], sp.S.Zero)
+
+
 WAYS = {"turn": (turn, "about an axis"), "slide": (slide, "along an axis"),
-        "line": (line, "between two points")}
+        "line": (line, "between two points"), "way": (way, "along a path")}
 
 
 def motor(name: str, planar: bool) -> Element:

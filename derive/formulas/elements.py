@@ -104,6 +104,7 @@ class Element(NamedTuple):
     losses: tuple[sp.Expr, ...]         # force of the dampers, where that is not the whole force
     memory: tuple[tuple[str, sp.Expr], ...] = ()    # numbers kept, which the next step reads
     reads: tuple[sp.Symbol, ...] = ()   # multipliers of other equations
+    sees: tuple[sp.Symbol, ...] = ()    # numbers that another element keeps, of this iterate
     stages: tuple[Stage, ...] = ()      # what the force and the memory are made of, in this order
     slopes: tuple[Stage, ...] = ()      # derivatives of these, for the matrix
     moves: tuple[Stage, ...] = ()       # of a column: what these move with its unknown
@@ -269,6 +270,8 @@ def _sums(blocks, kinetic, strain, potential) -> dict[str, sp.Expr]:
         linear, moment = sp.zeros(3, 1), sp.zeros(3, 1)
         for block in blocks:
             p = conjugate_to(kinetic, block.rate.symbols)
+            if block.state.kind == "scalar":    # no rigid motion of the element changes it
+                continue
             if block.rotational:
                 moment += block.state.symbols * p
             else:

@@ -73,6 +73,17 @@ def spring(planar: bool) -> Element:
                    dissipation=c * rate**2 / 2)
 
 
+def way_spring() -> Element:
+    """Spring and damper along a path: ``F = k u + k3 u^3 + c u'``, u the way from that at rest."""
+    space = Space(False)
+    constants = [*_stiffness(space), constant(space, "length", "scalar", "way at rest")]
+    k, k3, c, length = (q.symbols[0] for q in constants)
+    own = amplitude(space, "a")
+    stretch, rate = own.state.symbols[0] - length, own.rate.symbols[0]
+    return element("way_spring", "spring and damper along a path", space, (own,), constants,
+                   strain=k * stretch**2 / 2 + k3 * stretch**4 / 4, dissipation=c * rate**2 / 2)
+
+
 def torsion_spring(planar: bool) -> Element:
     """Spring and damper about the axis two bodies share: ``M = k u + k3 u^3 + c u'``.
 

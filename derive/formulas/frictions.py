@@ -15,6 +15,7 @@ from sebody.derive.formulas.elements import (
     Block,
     Constant,
     Element,
+    amplitude,
     constant,
     kept,
     near_angle,
@@ -117,6 +118,37 @@ def friction_slide(planar: bool, read: tuple[int, int]) -> Element:
     u, w = measures.add("way", way), measures.add("way_rate", rate)
     return _joint_friction("slide", "friction along an axis", space, measures, read, [e],
                            [u - kept("way")], [w], [rate], [("way", u)])
+
+
+def friction_way(planar: bool) -> Element:
+    """Friction along a path, of what one of its bodies bears.
+
+    The path keeps the tangent ``T = w x_s`` of this body with the share w of it, so of a force lam
+    on the point the body bears a normal force whose friction limit, conjugate to the way, is
+
+        mu |T x lam|
+
+    without a division; and a preload has ``mu |T|`` as much.
+    """
+    space = Space(planar)
+    own = amplitude(space, "a")
+    measures = Measures([own])
+    s, w = measures.add("way", own.state.symbols[0]), measures.add("way_rate", own.rate.symbols[0])
+    constants, bristle = bristle_constants(space)
+    loaded = [constant(space, name, "scalar", meaning) for name, meaning in (
+        ("preload", LOADED["preload"]), ("reads", "1 where the force of the path presses, else 0"))]
+    preload, reads = (c.symbols[0] for c in loaded)
+    lam, T = (space.quantity(name, "vector", "element") for name in ("lam", "tangent"))
+    push = sp.Symbol("pressed")
+    across = [x for x in cross(T.symbols, lam.symbols) if x != 0]
+    normal = preload * length(T.kept) + reads * length(across)
+    slip, rate = sp.symbols("increment slip")
+    law = friction([slip], [rate], push, bristle)
+    stages = (((push, normal), (slip, s - kept("way")), (rate, w)), *law.stages)
+    return law_element(
+        "planar_" * planar + "friction_way", "friction along a path", space, measures,
+        [*constants, *loaded], stages, Forces((own.rate.symbols[0],), law.forces, law.forces),
+        [("way", s), *law.memory, ("normal", normal)], reads=lam.kept, sees=T.kept)
 
 
 def friction_cylindrical() -> Element:

@@ -57,7 +57,7 @@ class Measures:
 def law_element(name: str, summary: str, space: Space, measures: Measures,
                 constants: Sequence[Constant], stages: Sequence[Stage], forces: Forces,
                 memory: Sequence[tuple[str, sp.Expr]], stored: sp.Expr = sp.S.Zero,
-                reads: Sequence[sp.Symbol] = ()) -> Element:
+                reads: Sequence[sp.Symbol] = (), sees: Sequence[sp.Symbol] = ()) -> Element:
     """Derive an element from its measures, laws and forces.
 
     Parameters
@@ -71,7 +71,10 @@ def law_element(name: str, summary: str, space: Space, measures: Measures,
         Strain energy.
     reads : sequence of Symbol
         Multipliers of other equations.
-    """
+    sees : sequence of Symbol
+        Numbers that another element keeps, as it has just found them; the matrix takes them as
+        constants.
+    """""
     blocks = measures.blocks
     residual, lost = (_conjugate(space, blocks, forces.rates, values)
                       for values in (forces.forces, forces.lost))
@@ -81,7 +84,8 @@ def law_element(name: str, summary: str, space: Space, measures: Measures,
         name, ("planar " if space.planar else "") + summary, space, tuple(constants),
         tuple(blocks), (), (*residual, *none), (), (),
         {} if stored == 0 else {"strain": stored}, power, (*lost, *none),
-        memory=tuple(memory), reads=tuple(reads), stages=(tuple(measures.stage), *stages))
+        memory=tuple(memory), reads=tuple(reads), sees=tuple(sees),
+        stages=(tuple(measures.stage), *stages))
     return _with_column(element, stages)
 
 

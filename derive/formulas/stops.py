@@ -8,6 +8,7 @@ from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     Constant,
     Element,
+    amplitude,
     choose,
     constant,
     position,
@@ -60,6 +61,16 @@ def distance_stop(planar: bool) -> Element:
     d = b.state.symbols - a.state.symbols
     value = _named(measures, sp.sqrt(d.dot(d)))
     return _stop("distance_stop", "limits of a distance", space, measures, [], value,
+                 [("way", value.value)])
+
+
+def way_stop() -> Element:
+    """Limits of the way along a path."""
+    space = Space(False)
+    own = amplitude(space, "a")
+    measures = Measures([own])
+    value = _named(measures, own.state.symbols[0])
+    return _stop("way_stop", "limits of the way along a path", space, measures, [], value,
                  [("way", value.value)])
 
 

@@ -51,8 +51,11 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "planar_bearing": lambda: forces.bearing(True),
     "planar_bushing": lambda: forces.bushing(True),
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
-       for way in actuators.WAYS for part in (actuators.motor, actuators.rotor)
+       for way in ("turn", "slide", "line") for part in (actuators.motor, actuators.rotor)
        for planar in (False, True)},
+    "way_motor": lambda: actuators.motor("way", False),
+    "way_rotor": lambda: actuators.rotor("way", False),
+    "way_spring": forces.way_spring,
 }
 LAWS = {            # laws along measures, with numbers that are kept from step to step
     # friction in joints: f and m count the multipliers it reads, forces and moments
@@ -70,6 +73,9 @@ LAWS = {            # laws along measures, with numbers that are kept from step 
     "planar_friction_slide": lambda: frictions.friction_slide(True, (0, 0)),
     "planar_friction_slide_f1": lambda: frictions.friction_slide(True, (1, 0)),
     "planar_friction_slide_f1m1": lambda: frictions.friction_slide(True, (1, 1)),
+    "friction_way": lambda: frictions.friction_way(False),
+    "planar_friction_way": lambda: frictions.friction_way(True),
+    "way_stop": stops.way_stop,
     "turn_stop": lambda: stops.turn_stop(False),
     "slide_stop": lambda: stops.slide_stop(False),
     "distance_stop": lambda: stops.distance_stop(False),

@@ -164,6 +164,9 @@ def loads(element: Element) -> list[Statement]:
               for k, s in enumerate((*element.reads, *element.multipliers))]
     pairs += [(kept(name), ARGUMENTS["references"][memory_place(k)])
               for k, (name, _) in enumerate(element.memory) if kept(name) in used]
+    # where another element keeps numbers stands behind the unknowns
+    seen = arrays.unknowns[len(element.residual)]
+    pairs += [(s, ARGUMENTS["frames"][seen + k]) for k, s in enumerate(element.sees)]
     amplitudes = 3 * ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
     pairs += [(s, ARGUMENTS["loads"][amplitudes + k]) for k, s in enumerate(AMPLITUDE) if s in used]
     return [Set((s,), (value,)) for s, value in pairs]

@@ -68,11 +68,15 @@ ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *PATHS, *PATH_LOADS, *MOTIO
 
 # long kernels of rare elements: gradients of runs with these take matrices in place of products
 UNSHIPPED = "bearing", "planar_bearing"
+# and of what acts along paths, whose runs have none
+ALONG_PATHS = tuple(name for name in CATALOGUE
+                    if name.removeprefix("planar_").removeprefix("friction_").startswith("way"))
 # with products of their derivatives, of which gradients of runs are made: general superelements and
 # the layouts of beams, others take these; no frames that depend on the steps before
 LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])
       and (row[0] in LAYOUTS or row[2] == "frame_axes")),
-    *(name for name in SMOOTH if name not in UNSHIPPED), *LAWS,
+    *(name for name in SMOOTH if name not in (*UNSHIPPED, *ALONG_PATHS)),
+    *(name for name in LAWS if name not in ALONG_PATHS),
     *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))

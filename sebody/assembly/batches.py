@@ -192,6 +192,9 @@ def _element_batches(numbering: Numbering, constants: _Constants, elements: Iter
         if element.path is not None:
             carrier = element.path.here.carrier
             behind = [frames[element if isinstance(carrier, Node) else carrier]]
+        if element.seen is not None:
+            assert element.pressed_by is not None
+            behind = [numbering.memories[element.pressed_by.constraints[element.seen]][0]]
         if element.body is not None:
             columns = 0 if element.series is None else len(element.series.names)
             behind = [numbering.series.get(element, 0), columns]

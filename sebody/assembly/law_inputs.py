@@ -99,6 +99,8 @@ def dependences(model: Mechanism, laws: Iterable[Element]) -> dict[Element, Depe
     places = {place.dof_block: place for node in model.nodes.values()
               for place in (Attachment(node, "position"), Attachment(node, "rotation"))
               if place.dof_block is not None}
+    places |= {one.dof_blocks[-1]: one.attachments[-1] for one in model.constraints
+               if one.path is not None}     # the way of a point
     modes = {first + k: (body, k) for body, first in numbering.modes.items()
              for k in range(model.bodies[body].reduced.modes)}
     found = {}
@@ -138,6 +140,7 @@ def _provisional(model: Mechanism) -> Numbering:
     blocks = [block for block in dict.fromkeys(
         block for node in model.nodes.values() for block in (node.position, node.rotation))
         if block is not None]
+    blocks += model.ways()
     *firsts, end = accumulate((block.start.size for block in blocks), initial=0)
     bodies = list(model.bodies)
     *modes, total = accumulate((model.bodies[name].reduced.modes for name in bodies), initial=end)

@@ -173,8 +173,9 @@ def _refuse_loose(model: Mechanism, held: dict) -> None:
                 if parent.solved and parent not in held:
                     raise InputError(f"{_loose(model, parent, held)} is not connected to "
                                      "anything: attach a body or fix it")
+    ways = set(model.ways())        # their points are on paths
     for load in model.loads:
-        borne = parents(load.dof_blocks)
+        borne = [one for one in parents(load.dof_blocks) if one not in ways]
         if borne and load.time_function is not None and not any(p in held for p in borne):
             raise InputError(f"{load.name}: the load acts on a node without a body: attach one")
 

@@ -34,7 +34,7 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
     name : str
         Name of the actuator and of the input.
     joint : str or Joint, optional
-        A revolute, prismatic or cylindrical joint, or a slider.
+        A revolute, prismatic or cylindrical joint, a slider, or a joint on a path.
     between : two nodes, optional
     node : Node or str, optional
     direction : (3,), planar (2,), optional
@@ -119,7 +119,7 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
         raise unknown("joint", joint, names, "the model has", "the model has none")
     pair = names[joint] if isinstance(joint, str) else inputs.instance(
         joint, f"{where}: joint", Joint, "give a joint or its name")
-    kinds = ["torque"] * (pair.kind in TURNS) + ["force"] * (pair.kind in SLIDES)
+    kinds = ["torque"] * (pair.kind in TURNS) + ["force"] * (pair.kind in (*SLIDES, "path"))
     if not kinds:
         raise InputError(f"{where}: {pair.name!r} is a {pair.kind}, in which nothing moves along "
                          f"or about one axis: {WAYS}")
@@ -128,6 +128,8 @@ def _of_joint(model: Mechanism, where: str, joint: str | Joint, what: str | None
     chosen = inputs.choice(what or kinds[0], f"{where}: what", kinds)
     if chosen == "torque":
         return "turn", rotations(pair.node, pair.to), {} if model.planar else {"e": pair.axis}
+    if pair.kind == "path":
+        return "way", pair.constraints[0].attachments[-1:], {}
     return "slide", pair.way.attachments, {"e": pair.way.direction}
 
 

@@ -54,7 +54,8 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
     of : Joint or str, or two nodes
         A revolute joint or drive of an angle, [rad], or a prismatic or cylindrical joint, slider,
         or drive of a way: the angle or way of its `node` against `to` (the ground) about or along
-        the axis, from the start, as results have it; or the distance itself of two nodes.
+        the axis, from the start, as results have it; of a joint on a path its way, counted from
+        the beginning of the path; or the distance itself of two nodes.
     lower, upper : float, optional
         Limits [length] or [rad]; at least one.
     restitution : float
@@ -228,6 +229,9 @@ def _measured(model: Mechanism, of: object) -> tuple[str, str, tuple, dict, floa
     if joint.kind in SLIDES or kind == "slide_drive":
         way = joint.way
         return (what, "slide_stop", way.attachments, {"e": way.direction, "start": way.start}, 0.0)
+    if joint.kind == "path":
+        place = joint.constraints[0].attachments[-1]
+        return what, "way_stop", (place,), {}, float(place.dof_block.start[0])
     if joint.kind in TURNS or kind == "turn_drive":
         own = {} if model.planar else turning(joint.own_axes)
         return what, "turn_stop", rotations(joint.node, joint.to), own, 0.0

@@ -15,13 +15,14 @@ def extent(model: Mechanism) -> float:
     """Largest length in a model [length]; 0 if nothing has one.
 
     The distance of the outermost nodes, ground points included, the size of the largest body, the
-    largest radius of gyration of a rigid body about its node, or the longest spring: where the
-    model is put, and which way it is turned, does not matter.
+    largest radius of gyration of a rigid body about its node, the longest spring or path: where
+    the model is put, and which way it is turned, does not matter.
     """
     points = [node.point for node in (*model.nodes.values(), *model.grounds)]
     lengths = [_diameter(np.array(points)) if points else 0.0]
     lengths += [_size(reduced) for reduced in
                 {body.reduced: body.reduced for body in model.bodies.values()}.values()]
+    lengths += [path.length for path in model.paths.values()]
     for body in model.rigid_bodies.values():
         if is_unbalance(body):
             continue

@@ -20,9 +20,10 @@ KERNELS = {("revolute", False): "friction_turn_f3m2", ("universal", False): "fri
            ("prismatic", False): "friction_slide_f2m3", ("slider", False): "friction_slide_f2",
            ("cylindrical", False): "friction_cylindrical_f2m2",
            ("spherical", False): "friction_spherical_f3",
+           ("path", False): "friction_way", ("path", True): "friction_way",
            ("revolute", True): "friction_turn_f2", ("spherical", True): "friction_turn_f2",
            ("prismatic", True): "friction_slide_f1m1", ("slider", True): "friction_slide_f1"}
-SLIDING = ("prismatic", "slider")
+SLIDING = ("prismatic", "slider", "path")
 BEARINGS = ("friction_turn_f3m2", "friction_turn_f3m1")
 TAKES = {"radial": (1.0, 0.0), "axial": (0.0, 1.0), "whole": (1.0, 1.0)}
 DAMPING = 0.7           # of bristles, relative to the critical one
@@ -48,13 +49,16 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     The force along the axis of a hinge is that of a collar, with friction of its own: a second
     `friction` in the joint that takes it.
 
+    Along a path each of its bodies has friction of what it bears, and they are numbered where
+    there are several.
+
     Sticking is elastic: bristles with a stiffness, which bend up to the limit and do not creep.
 
     Parameters
     ----------
     joint : Joint or str
         A revolute, universal (friction about both axes), prismatic, cylindrical or spherical joint,
-        a slider, or a drive, which knows no normal force but the preload.
+        a slider, a joint on a path, or a drive, which knows no normal force but the preload.
     coefficient : float
         Of sliding.
     static : float, optional
@@ -85,7 +89,8 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
 
     Returns
     -------
-    Element, or two of a universal joint, ``name 1`` about the axis of `node`, ``name 2``
+    Element, or two of a universal joint, ``name 1`` about the axis of `node`, ``name 2``; along a
+    path over several bodies one of each, ``name 1`` and so on
 
     Raises
     ------
@@ -95,9 +100,6 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     """
     joint = _joint(model, joint)
     what = f"friction in {joint.name!r}"
-    if joint.kind == "path":
-        raise InputError(f"{what}: along a path there is no friction yet: use it in joints or "
-                         "contacts")
     sliding = _sliding(joint)
     dry = checked_friction(what, coefficient, static, bristle, damping, speed)
     if slip is not None:
@@ -115,20 +117,33 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     if not reads and not preload > 0:
         raise InputError(f"{what}: nothing presses, since the force in it is not read: give "
                          "preload=" + " or reaction=True" * (joint.kind != "drive"))
+    if joint.kind == "path":
+        _refuse_levers(what, radius=radius, arm=arm)
+        del constants["radius"], constants["per_moment"]
+        constants["reads"] = float(reads)
     parts = _parts(model, joint, sliding, what)
     kind = KERNELS[joint.kind, model.planar] if reads else _plain(joint, sliding, what)
     if takes is not None or kind in BEARINGS:
         constants |= _taken(what, joint, kind, takes)
     name = chosen_name(model, name, what.replace("'", ""))
-    if reads and not has_forces(joint):
+    if reads and joint.kind != "path" and not has_forces(joint):
         give_forces(model, joint)
     made = []
     for k, (attachments, own) in enumerate(parts, 1):
         label = f"{name} {k}" if len(parts) > 1 else name
         made.append(Element(label, model.kind_of(kind), attachments, constants | own,
-                            pressed_by=joint if reads else None, tuned=dry.tuned))
+                            pressed_by=joint if reads or joint.kind == "path" else None,
+                            seen=k - 1 if joint.kind == "path" else None, tuned=dry.tuned))
     model.loads.extend(made)
     return made[0] if len(made) == 1 else tuple(made)
+
+
+def _refuse_levers(what: str, **given: float | None) -> None:
+    """Refuse what is of moments and turns, which a point on a path has not."""
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"{what}: a point on a path turns freely and bears no moment: leave "
+                             f"{name}= out")
 
 
 def _taken(what: str, joint: Joint, kind: str, takes: str | None) -> dict[str, float]:
@@ -193,6 +208,8 @@ def _sliding(joint: Joint) -> bool:
 
 def _plain(joint: Joint, sliding: bool, what: str) -> str:
     """The kernel that reads no multipliers."""
+    if joint.kind == "path":
+        return KERNELS["path", False]
     if joint.kind == "cylindrical":
         raise InputError(f"{what}: leave reaction=False out, a cylindrical joint knows its force")
     if joint.kind == "spherical" and len(joint.node.point) == 3:
@@ -208,6 +225,8 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
         raise InputError(f"{what}: a {joint.kind} has no friction: use it in {', '.join(kinds)} "
                          "joints or in drives")
     a, b = joint.node, joint.to
+    if joint.kind == "path":
+        return [(one.attachments[-1:], {}) for one in joint.constraints]
     if sliding:
         return [(joint.way.attachments, {"e": joint.way.direction})]
     if joint.kind == "cylindrical":

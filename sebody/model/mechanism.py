@@ -80,8 +80,11 @@ class Mechanism:
         return [c for joint in self.joints for c in joint.constraints]
 
     def kind_of(self, name: str) -> str:
-        """Kind of an element in this model's dimension: planar elements have their own kernels."""
-        return "planar_" + name if self.planar else name
+        """Kind of an element in this model's dimension: planar elements have their own kernels.
+
+        Those of the way along a path are the same in both.
+        """
+        return "planar_" + name if self.planar and not name.startswith("way_") else name
 
     def dof_blocks(self) -> list[DofBlock]:
         """All DOF blocks, each once."""

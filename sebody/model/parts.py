@@ -253,6 +253,7 @@ class Element:
     path: OnPath | None = None      # of a point on a path; the body's coordinates come first
     shares: "Element | None" = None     # whose multipliers it adds to
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
+    seen: int | None = None     # of friction along a path: piece whose tangent it reads
     law: LawParts | None = None             # of a continuous controller
     series: LoadSeries | None = None    # of a load on a body: of the columns of its loads
     tuned: Mapping[str, float] = field(default_factory=dict)    # see `sebody.runs.tuning`

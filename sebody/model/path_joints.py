@@ -38,7 +38,7 @@ SAMPLES = 8         # places in each interval between knots from which the neare
 
 
 def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: float | None = None,
-               rate: float | None = None, name: str | None = None) -> Joint:
+               rate: float | None = None, inertia: float = 0.0, name: str | None = None) -> Joint:
     """Point that stays on a path: `node` slides along flexible bodies, and turns freely.
 
     How far along the path it is, its way, is an unknown of its own, so the force on `node` is
@@ -57,6 +57,8 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
         comes by the same place twice.
     rate : float, optional
         Rate of the way at the start [length/time]; by default it follows from the velocities.
+    inertia : float
+        Of wheels that turn with the way, a sum of J/r^2 [mass].
     name : str, optional
         Of its results, ``<name>.way``, ``<name>.rate``, ``<name>.force`` on the node and the like;
         by default ``path at <node>``.
@@ -84,6 +86,7 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
             raise InputError(f"{what}: the node is one of superelement {piece.carrier.name!r}, "
                              f"which path {on.name!r} goes along: give a node of its own at this "
                              "place")
+    wheels = inputs.number(inertia, f"{what}: inertia", least=0)
     begins = _start(model, what, a, on, start)
     name = named(model, name, PATH, a)
     way = DofBlock(f"{name}.way", np.array([begins]), np.zeros(1))
@@ -103,6 +106,10 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
     to = carrier if isinstance(carrier, Node) else carrier.nodes[carrier.reduced.position_nodes[0]]
     joint = Joint(name, tuple(equations), a, to, None, PATH)
     model.joints.append(joint)
+    if wheels:
+        model.loads.append(Element(
+            chosen_name(model, None, f"wheels of {name}"), "way_rotor",
+            joint.constraints[0].attachments[-1:], {"inertia": wheels, "ratio": 1.0}))
     return joint
 
 

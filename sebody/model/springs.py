@@ -20,23 +20,29 @@ from sebody.model.parts import Attachment, Element, Joint, Node, positions, rota
 from sebody.model.shafts import shaft_axes
 
 
-def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float = 0.0,
-           damping: float = 0.0, length: float | None = None, cubic: float = 0.0,
+def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = None,
+           stiffness: float = 0.0, damping: float = 0.0, length: float | None = None, cubic: float = 0.0,
            name: str | None = None) -> Element:
     """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch.
 
     Parameters
     ----------
+    node : Node, str or Joint
+        Also a joint on a path, without `to`: the spring then acts along the path, on its way.
+    to : Node or str
     stiffness, damping, cubic : float
         k, c and k3 [force/length, force time/length, force/length^3].
     length : float, optional
-        Length without force [length]; the initial length by default.
+        Length without force [length], along a path the way; that of the start by default.
 
     Raises
     ------
     InputError
         Numbers that are negative, or nodes that coincide.
     """
+    if to is None:
+        return _way_spring(model, node, stiffness, damping, length, cubic, name)
+    assert not isinstance(node, Joint)
     a, b = pair(model, node, known(model, to), "spring", ("position",))
     start = float(np.linalg.norm(b.point - a.point))
     if not start > 0:
@@ -46,6 +52,24 @@ def spring(model: Mechanism, node: Node | str, to: Node | str, stiffness: float 
     _check("spring", stiffness=stiffness, cubic=cubic, damping=damping, length=length)
     return _add(model, name, "spring", a, positions(a, b),
                 {"k": stiffness, "k3": cubic, "c": damping, "length": length})
+
+
+def _way_spring(model: Mechanism, of: Joint | Node | str, stiffness: float, damping: float,
+                length: float | None, cubic: float, name: str | None) -> Element:
+    """Spring along a path."""
+    joint = of if isinstance(of, Joint) else next(
+        (one for one in model.joints if one.name == of), None)
+    if joint is None or joint not in model.joints or joint.kind != "path":
+        called = of if isinstance(of, str) else getattr(of, "name", of)
+        raise InputError(f"spring at {called!r} has one end: give to=, the node at the other one, "
+                         "or a joint on a path, along which it acts")
+    what, place = f"spring of {joint.name!r}", joint.constraints[0].attachments[-1]
+    at = place.dof_block.start[0] if length is None else inputs.number(length, f"{what}: length")
+    _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
+    name = chosen_name(model, name, f"spring of {joint.name}")
+    model.loads.append(Element(name, "way_spring", (place,), {
+        "k": stiffness, "k3": cubic, "c": damping, "length": float(at)}))
+    return model.loads[-1]
 
 
 def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float = 0.0,

@@ -29,9 +29,10 @@ def drives(of: Parts) -> dict[str, Joint | Motion]:
 
 
 def loads(of: Parts) -> dict[str, Element]:
-    """Loads, springs and dampers on nodes."""
+    """Loads, springs and dampers on nodes, not on the ways of points along paths."""
     return {load.name: load for load in of.model.loads
-            if load.attachments and load.law is None and load.path is None}
+            if load.attachments and load.law is None and load.path is None
+            and load.attachments[0].node.point.size}
 
 
 def of_body(of: Numbers, name: str) -> list[Number]:

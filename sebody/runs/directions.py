@@ -24,6 +24,8 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
         return [of_point(element, numbering, state, axis) for axis in np.eye(size)]
     if kind.startswith(("sphere_on", "point_on")):
         return [pair(numbering, state, places, axis, [axis, axis]) for axis in np.eye(size)]
+    if kind == "friction_way":
+        return [_one(numbering, places[0])]
     if kind.startswith("friction_slide"):
         return [_slide(numbering, state, places, turns[0], element.vector("e"))]
     if kind.startswith("friction_cylindrical"):
@@ -36,6 +38,13 @@ def directions(element: Element, numbering: Numbering, state: State) -> list[NDA
     if kind == "gear_play":
         return [_of_gear(element, numbering, state, 1)]
     return [_turn(numbering, state, turns, np.cross(c["n"], c["m"]) if "n" in c else None)]
+
+
+def _one(numbering: Numbering, way: DofBlock) -> NDArray:
+    """The row of a way along a path, which is a coordinate."""
+    row = np.zeros(numbering.total)
+    row[stretch(numbering, way)] = 1.0
+    return row
 
 
 def of_mesh(gear: Element, numbering: Numbering, state: State) -> NDArray:

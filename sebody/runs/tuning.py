@@ -73,8 +73,9 @@ def _mobility(rows: list[NDArray], solve: Callable[[NDArray], NDArray], system: 
     What a drive moves does not give way: it gets the mobility of its parts alone; what is held, or
     moved as a node, gets that of a typical inertia of the model, as its parts are not known.
     """
-    inertias = np.maximum(system.inertias[:free], 1e-300)
-    alone = max(float((row[:free]**2 / inertias)[row[:free] != 0.0].sum()) for row in rows)
+    inertias = system.inertias[:free]
+    heavy = inertias > 0.0      # ways along paths have none
+    alone = max(float((row[:free][heavy]**2 / inertias[heavy]).sum()) for row in rows)
     answers = np.array([response(row, solve, system, state, free) for row in rows])
     joint = answers @ np.array(rows).T
     mobility = float(np.linalg.eigvalsh((joint + joint.T) / 2)[-1])
@@ -166,7 +167,8 @@ class LoadedBristles:
         if "friction" in load.kind:
             rows = directions(load, self.numbering, self.state)
             axes = np.eye(len(rows))
-            lever = 1.0 if "cylindrical" in load.kind else constants["radius"]
+            has_lever = not load.kind.endswith(("friction_cylindrical_f2m2", "friction_way"))
+            lever = constants["radius"] if has_lever else 1.0
         else:
             rows, axes = self._touching(load, constants)
             lever = 1.0

@@ -118,6 +118,7 @@ CASES = {
                    "start=1 is (4, ")],
         "rate": [pair for pair in are("path joint at 'place': rate", *NO_NUMBER)
                  if pair[0] is not None],
+        "inertia": not_negative("path joint at 'place': inertia"),
         "name": names("path at place")}),
     "path_joint with a start": Right(Model.path_joint, {
         "node": "place", "path": "open", "start": 0.0}, {

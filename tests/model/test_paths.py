@@ -297,11 +297,6 @@ def test_refused_by_name_and_ensembles_one_by_one():
             refuse()
     with pytest.raises(InputError, match="joint 'runs' is on a path, which is not exported"):
         refuse_paths(model)
-    for build, said in ((lambda: model.friction("runs", 0.1), "along a path there is no friction"),
-                        (lambda: model.stop("runs", upper=0.5), "a path has neither an angle"),
-                        (lambda: model.actuator("motor", joint="runs"), "'runs' is a path, in")):
-        with pytest.raises(InputError, match=said):
-            build()
     found = Ensemble(model, 1e-2).run({"bead.mass": np.array([1.0, 2.0])}, 0.2,
                                       {"s": final("runs.way")})
     assert found["s"] == pytest.approx(0.4 * G * 0.04, rel=1e-6)

@@ -160,6 +160,8 @@ def element_head(given: Element, kernel: Kernel) -> Head:
            ] * (multipliers > 0),
          f"WIDTH = {known[WIDTH]}",
          f"READS = {len(given.reads)}      # multipliers of other equations that it reads",
+         *([f"SEES = {len(given.sees)}       # numbers that another element keeps, of this iterate"]
+           if given.sees else []),
          *memory(name for name, _ in given.memory),
          f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
          f"POWER = {power}        # does work on the system: a load, damper or drive",

@@ -49,10 +49,13 @@ def element_case(module: ModuleType, seed: int) -> Case:
                   for r in random.normal(size=(nrot, 3))])
     q = random.normal(size=n)
     size = Row(module.__name__, module.CONSTANTS).size({})
-    return Case(module, n, index_row(n, module.N_POSITIONS, nrot),
+    seen = random.normal(size=getattr(module, "SEES", 0))
+    index = np.r_[index_row(n, module.N_POSITIONS, nrot), 9 + kept]     # where those are
+    return Case(module, n, index,
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n),
-                np.r_[np.full(9, TURNED), np.zeros(kept)], np.zeros(9 + kept),
+                np.r_[np.full(9, TURNED), np.zeros(kept), seen],
+                np.r_[np.zeros(9 + kept), seen],
                 random.normal(size=3), AMPLITUDES)
 
 
@@ -156,7 +159,7 @@ def body_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
     p, d = momenta(case), case.dimension
     linear, moment, first = np.zeros(3), np.zeros(3), d * case.module.N_POSITIONS
-    for at in range(0, first, d):
+    for at in range(0, first, d) if case.n > 1 else ():     # rigid motions leave a way as it is
         x, of_point = (np.r_[values[at:at + d], np.zeros(3 - d)] for values in (case.q, p))
         linear, moment = linear + of_point, moment + np.cross(x, of_point)
     if case.planar:

@@ -1,0 +1,166 @@
+"""What acts along paths: friction, stops, springs, actuators, wheels; by closed forms and energy."""
+
+import numpy as np
+import pytest
+from model.test_paths import SHIFT, TURN
+
+from sebody import InputError, Model, simulate
+from sebody.analysis import equilibrium
+from sebody.control import state_feedback
+from sebody.fem import rectangle
+from sebody.model.profiles import rest_to_rest
+from sebody.model.variants import keep_modes
+
+G, MASS = 9.81, 2.0
+SINE, COSINE = 0.6, 0.8     # of the slope
+
+
+def slope(planar=True, gravity=G, **options):
+    """A bead on a straight slope that goes down from the origin; nothing else."""
+    model = Model(planar=planar)
+    along = np.array([COSINE, -SINE]) if planar else np.array([0.48, 0.64, -SINE])
+    bead = model.node("bead", 0 * along, "translation")
+    model.point_mass("mass", bead, MASS)
+    model.gravity((0, -gravity) if planar else (0, 0, -gravity))
+    model.path("rail", points=[k * along for k in range(5)], ends="straight")
+    model.path_joint(bead, "rail", name="runs", **options)
+    return model
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_friction_slides_and_sticks(planar):
+    model = slope(planar)
+    model.friction("runs", 0.3, name="rub")
+    result = simulate(model, 1e-2, 1.0)
+    acceleration = G * (SINE - 0.3 * COSINE)
+    assert result["runs.way"] == pytest.approx(acceleration * result.t**2 / 2, abs=1e-9)
+    assert result["runs.normal_force"] == pytest.approx(MASS * G * COSINE, rel=1e-9)
+    assert result["runs.thrust"][1:] == pytest.approx(-0.3 * MASS * G * COSINE, rel=1e-9)
+    for rests in ({"coefficient": 0.8}, {"coefficient": 0.0, "static": 0.5, "preload": 30.0,
+                                         "reaction": False}):
+        model = slope(planar)
+        model.friction("runs", **rests)
+        assert simulate(model, 1e-2, 1.0)["runs.way"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_spring_and_its_damper():
+    """An oscillator; its equilibrium, and the balance of energy."""
+    k, c, rest = 100.0, 3.0, 0.2
+    model = slope(inertia=1.0)
+    model.spring("runs", stiffness=k, damping=c, length=rest, name="spring")
+    result = simulate(model, 1e-3, 2.0)
+    mass, place = MASS + 1.0, rest + MASS * G * SINE / k
+    decay = c / (2 * mass)
+    omega = np.sqrt(k / mass - decay**2)
+    t = result.t
+    exact = place * (1 - np.exp(-decay * t) * (np.cos(omega * t) + decay / omega * np.sin(
+        omega * t)))
+    assert result["runs.way"] == pytest.approx(exact, abs=5e-6)
+    energy = sum(result[f"energy.{one}"] for one in ("kinetic", "strain", "potential"))
+    assert energy - energy[0] == pytest.approx(result["spring.work"], abs=2e-5)
+    assert equilibrium(model)["runs.way"][-1] == pytest.approx(place, rel=1e-9)
+    model.path_joint(model.node("other", (0.8, -0.6), "translation"), "rail", name="stays")
+    assert model.spring("stays", stiffness=1.0).constants["length"] == pytest.approx(1.0)
+
+
+def test_a_stop_and_a_motor():
+    model = slope(gravity=0.0, rate=3.0)
+    model.stop("runs", upper=1.0, stiffness=1e5, restitution=0.6, at_speed=3.0, name="buffer")
+    result = simulate(model, 1e-3, 0.6)
+    assert result["runs.rate"][0] == pytest.approx(3.0)
+    assert result["runs.rate"][-1] == pytest.approx(-0.6 * 3.0, rel=2e-3)
+    model = slope()
+    model.actuator("motor", joint="runs", start=5.0, inertia=0.01, ratio=10.0)
+    moved = (50.0 + MASS * G * SINE) / (MASS + 1.0) / 2
+    assert simulate(model, 1e-2, 1.0)["runs.way"][-1] == pytest.approx(moved, rel=1e-9)
+
+
+@pytest.mark.parametrize("period", [None, 2e-3])
+def test_a_controller_holds_a_way(period):
+    """In the equations of motion, and by samples."""
+    model = slope()
+    model.actuator("motor", joint="runs")
+    model.sensor("error", "runs.way", bias=-0.5)
+    model.controller("servo", state_feedback([[400.0, 60.0]]), ["error", "runs.rate"], ["motor"],
+                     period=period)
+    held = 0.5 + MASS * G * SINE / 400.0
+    assert simulate(model, 2e-3, 2.0)["runs.way"][-1] == pytest.approx(held, abs=1e-6)
+
+
+def swinging(bodies=1, flat=True, turned=None, modes=4, **rub):
+    """An arm that falls on its hinge, with a slider on it that rubs."""
+    turned = np.eye(3) if turned is None else turned
+
+    def at(x):
+        point = x * np.array([np.cos(0.5), np.sin(0.5), 0.0])
+        return point[:2] if flat else turned @ point + SHIFT
+    model = Model(planar=flat)
+    base, tip = model.node("base", at(0.0)), model.node("tip", at(2.0))
+    up = {} if flat else {"up": turned @ (-np.sin(0.5), np.cos(0.5), 0.0)}
+    model.beam("arm", (base, tip), rectangle(0.01, 0.04, youngs_modulus=7e10, poisson_ratio=0.0,
+                                             density=2700.0), elements=20, bodies=bodies, modes=modes,
+               **up)
+    model.revolute(base, (0, 0, 1) if flat else turned[:, 2])
+    car = model.node("car", at(1.2), "translation")
+    model.point_mass("car mass", car, 0.3)
+    field = np.array([0.0, -G, 0.0])
+    model.gravity(field[:2] if flat else turned @ field)
+    model.path("rail", on="arm", ends="straight")
+    model.path_joint(car, "rail", name="runs")
+    model.friction("runs", 0.2, name="rub", **rub)
+    return model
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_work_of_friction_is_energy_lost():
+    """Of order 2 in the step; the same in general position, and along several bodies."""
+    ways, left = [], []
+    for h in (2e-3, 1e-3):
+        result = simulate(swinging(), h, 0.3)
+        energy = sum(result[f"energy.{one}"] for one in ("kinetic", "strain", "potential"))
+        left.append(np.abs(energy - energy[0] - result["rub.work"]).max())
+        ways.append(result["runs.way"][-1])
+    assert result["rub.work"][-1] < -0.01
+    assert left[1] < 3e-5 and left[1] < left[0] / 3
+    force, normal = result["runs.thrust"], result["runs.normal_force"]
+    slides = np.abs(result["runs.rate"]) > 0.05
+    assert slides.sum() > 100
+    assert np.abs(force[slides]) == pytest.approx(0.2 * normal[slides], rel=2e-3)
+    eight = simulate(swinging(modes=8), 1e-3, 0.3)["runs.way"]
+    spatial = simulate(swinging(flat=False, turned=TURN, modes=12), 1e-3, 0.3)  # 8 in the plane
+    assert spatial["runs.way"] == pytest.approx(eight, abs=1e-6)
+    four = simulate(swinging(bodies=4), 1e-3, 0.3)
+    assert four["runs.way"] == pytest.approx(eight, abs=1e-4)
+    fewer = simulate(keep_modes(swinging(), "arm", 2).model, 1e-3, 0.3)
+    assert fewer["runs.way"][-1] == pytest.approx(ways[1], abs=3e-4)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_restarts_and_drives():
+    model = swinging()
+    whole = simulate(model, 2e-3, 0.2)     # a start finds accelerations anew
+    later = simulate(model, 2e-3, 0.1, start=simulate(model, 2e-3, 0.1))
+    assert later["runs.way"][-1] == pytest.approx(whole["runs.way"][-1], abs=1e-6)
+    model = slope()
+    model.friction("runs", 0.3, name="rub")
+    model.drive_way("runs", rest_to_rest(1.0, 1.0), name="engine")
+    result = simulate(model, 1e-2, 1.0)
+    lifted = MASS * G * SINE
+    assert result["engine.work"][-1] == pytest.approx(-lifted + 0.3 * MASS * G * COSINE, rel=2e-3)
+
+
+def test_refused():
+    model = slope()
+    for build, said in (
+            (lambda: model.friction("runs", 0.3, radius=0.1), "bears no moment: leave radius= out"),
+            (lambda: model.friction("runs", 0.3, arm=0.1), "bears no moment: leave arm= out"),
+            (lambda: model.friction("runs", 0.3, takes="axial"), "takes is of revolute"),
+            (lambda: model.friction("runs", 0.3, reaction=False), "nothing presses"),
+            (lambda: model.stop("runs", lower=0.5, stiffness=1.0), "it starts at 0, beyond"),
+            (lambda: model.actuator("m", joint="runs", what="torque"), "what 'torque' is unknown: use 'force'"),
+            (lambda: model.spring("bead", stiffness=1.0), "spring at 'bead' has one end: give to="),
+            (lambda: model.spring("runs", stiffness=-1.0), "stiffness"),
+            (lambda: model.spring("runs", length=np.nan), "spring of 'runs': length"),
+            (lambda: model.path_joint("bead", "rail", inertia=-1.0), "inertia")):
+        with pytest.raises(InputError, match=said):
+            build()
