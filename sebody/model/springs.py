@@ -21,8 +21,8 @@ from sebody.model.shafts import shaft_axes
 
 
 def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = None,
-           stiffness: float = 0.0, damping: float = 0.0, length: float | None = None, cubic: float = 0.0,
-           name: str | None = None) -> Element:
+           stiffness: float = 0.0, damping: float = 0.0, length: float | None = None,
+           cubic: float = 0.0, name: str | None = None) -> Element:
     """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch.
 
     Parameters
@@ -40,9 +40,15 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
     InputError
         Numbers that are negative, or nodes that coincide.
     """
-    if to is None:
-        return _way_spring(model, node, stiffness, damping, length, cubic, name)
-    assert not isinstance(node, Joint)
+    joint = _joint_on_path(model, node)
+    if joint is not None and to is None:
+        return _way_spring(model, joint, stiffness, damping, length, cubic, name)
+    if joint is not None:
+        raise InputError(f"spring of {joint.name!r} acts along its path and has the node "
+                         f"{getattr(to, 'name', to)!r}: leave to= out, or give two nodes")
+    if to is None or isinstance(node, Joint):
+        raise InputError(f"spring at {getattr(node, 'name', node)!r} has one end: give to=, the "
+                         "node at the other one, or a joint on a path, along which it acts")
     a, b = pair(model, node, known(model, to), "spring", ("position",))
     start = float(np.linalg.norm(b.point - a.point))
     if not start > 0:
@@ -54,15 +60,16 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
                 {"k": stiffness, "k3": cubic, "c": damping, "length": length})
 
 
-def _way_spring(model: Mechanism, of: Joint | Node | str, stiffness: float, damping: float,
+def _joint_on_path(model: Mechanism, given: Joint | Node | str) -> Joint | None:
+    """A joint of the model that is on a path; none of anything else."""
+    return next((one for one in model.joints if one.kind == "path" and (
+        one is given or isinstance(given, str) and one.name == given
+        and given not in model.nodes)), None)
+
+
+def _way_spring(model: Mechanism, joint: Joint, stiffness: float, damping: float,
                 length: float | None, cubic: float, name: str | None) -> Element:
     """Spring along a path."""
-    joint = of if isinstance(of, Joint) else next(
-        (one for one in model.joints if one.name == of), None)
-    if joint is None or joint not in model.joints or joint.kind != "path":
-        called = of if isinstance(of, str) else getattr(of, "name", of)
-        raise InputError(f"spring at {called!r} has one end: give to=, the node at the other one, "
-                         "or a joint on a path, along which it acts")
     what, place = f"spring of {joint.name!r}", joint.constraints[0].attachments[-1]
     at = place.dof_block.start[0] if length is None else inputs.number(length, f"{what}: length")
     _check(what, stiffness=stiffness, cubic=cubic, damping=damping)

@@ -273,7 +273,8 @@ LOADS = {
     "gravity": Right(Model.gravity, {"field": Z}, {"field": vectors("gravity", 3)}),
     "spring": Right(Model.spring, {"node": "a", "to": "b", "stiffness": 1.0}, {
         "node": nodes(lacks_place),
-        "to": nodes(itself, ("c", "nodes 'a' and 'c' coincide")),
+        "to": [*[pair for pair in nodes(itself, ("c", "nodes 'a' and 'c' coincide"))
+                 if pair[0] is not None], (None, "spring at 'a' has one end: give to=")],
         "stiffness": not_negative("spring: stiffness"), "damping": not_negative("spring: damping"),
         "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
         "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),

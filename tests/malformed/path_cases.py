@@ -56,6 +56,7 @@ def _foreign_path():
     return other.path("curve", points=CURVE)
 
 
+RUB, STOP, SPRING = "friction in 'runs'", "stop of 'runs'", "spring of 'runs'"
 WHERE = "path 'new'"
 ENDS = f"{WHERE}: ends is"
 CASES = {
@@ -153,4 +154,42 @@ CASES = {
         "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], [(1, 0), (0, 1)], [],
                        [(0.0, "1")]),
         "name": names("drive of runs")}),
+    "friction along a path": Right(Model.friction, {
+        "joint": "runs", "coefficient": 0.3, "preload": 2.0}, {
+            "coefficient": not_negative(f"{RUB}: coefficient"),
+            "static": [(0.2, f"{RUB}: static is 0.2, below the coefficient of sliding 0.3")],
+            "radius": [(0.1, f"{RUB}: a point on a path turns freely and bears no moment: leave "
+                        "radius= out")],
+            "arm": [(0.1, "bears no moment: leave arm= out")],
+            "takes": [("axial", f"{RUB}: takes is of revolute and universal joints in space")],
+            "preload": not_negative(f"{RUB}: preload"),
+            "slip": are(f"{RUB}: slip", -1.0, 0.0, NAN, "1"),
+            "bristle": are(f"{RUB}: bristle", -1.0, 0.0, NAN, "1"),
+            "name": names("friction in runs")}),
+    "friction of a preload along a path": Right(Model.friction, {
+        "joint": "runs", "coefficient": 0.3, "preload": 2.0, "reaction": False}, {
+            "preload": [(0.0, f"{RUB}: nothing presses, since the force in it is not read: give "
+                         "preload= or reaction=True")]}),
+    "stop along a path": Right(Model.stop, {
+        "of": "runs", "lower": -0.5, "upper": 2.0, "stiffness": 1e3}, {
+            "lower": [*are(f"{STOP}: lower", NAN, "1"),
+                      (3.0, f"{STOP}: lower is 3 and upper 2, which leaves no room"),
+                      (0.5, f"{STOP}: it starts at 0, beyond the limits 0.5 and 2")],
+            "upper": [(-0.1, f"{STOP}: it starts at 0, beyond the limits")],
+            "stiffness": [(None, f"{STOP}: give stiffness=, the force at a depth of one")],
+            "name": names("stop of runs")}),
+    "spring along a path": Right(Model.spring, {
+        "node": "runs", "stiffness": 2.0, "length": 0.5}, {
+            "node": [*have("has one end: give to=", "place", "pin", "far", 3, None),
+                     (["runs"], "has one end: give to=")],
+            "to": [("a", "acts along its path and has the node 'a': leave to= out")],
+            "stiffness": not_negative(f"{SPRING}: stiffness"),
+            "damping": not_negative(f"{SPRING}: damping"),
+            "cubic": not_negative(f"{SPRING}: cubic"),
+            "length": are(f"{SPRING}: length", NAN, INF, "1"),
+            "name": names("spring of runs")}),
+    "actuator along a path": Right(Model.actuator, {"name": "engine", "joint": "runs"}, {
+        "what": [("torque", "actuator 'engine': what 'torque' is unknown: use 'force'")],
+        "inertia": are("actuator 'engine': inertia", -1.0, NAN),
+        "direction": [((1.0, 0.0, 0.0), "actuator 'engine': a direction goes with node= alone")]}),
 }

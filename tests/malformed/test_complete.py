@@ -25,7 +25,7 @@ BUILDERS = [name for name, value in vars(Model).items()
 WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
 # on coordinates of a body, see variants/planar.py
 OF_BODIES = ("body_load_", "body_contact_", "body_path_", "path_load_",
-             "mode_force")
+             "mode_force", "friction_way", "way_")
 
 
 def variants(right):
@@ -34,7 +34,8 @@ def variants(right):
     choices = [{}]
     if "explicit" in parameters:
         choices.append({"explicit": True})
-    if "to" in parameters and parameters["to"].default is None:
+    one_end = "to" in parameters and parameters["to"].default is None
+    if one_end and right.function is not Model.spring:      # which is along a path then
         choices += [{**choice, "to": None} for choice in choices]
     yield from ({**right.arguments, **choice} for choice in choices)
 

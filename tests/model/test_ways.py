@@ -1,10 +1,10 @@
-"""What acts along paths: friction, stops, springs, actuators, wheels; by closed forms and energy."""
+"""What acts along paths: friction, stops, springs, actuators, wheels: closed forms and energy."""
 
 import numpy as np
 import pytest
 from model.test_paths import SHIFT, TURN
 
-from sebody import InputError, Model, simulate
+from sebody import Model, simulate
 from sebody.analysis import equilibrium
 from sebody.control import state_feedback
 from sebody.fem import rectangle
@@ -98,8 +98,8 @@ def swinging(bodies=1, flat=True, turned=None, modes=4, **rub):
     base, tip = model.node("base", at(0.0)), model.node("tip", at(2.0))
     up = {} if flat else {"up": turned @ (-np.sin(0.5), np.cos(0.5), 0.0)}
     model.beam("arm", (base, tip), rectangle(0.01, 0.04, youngs_modulus=7e10, poisson_ratio=0.0,
-                                             density=2700.0), elements=20, bodies=bodies, modes=modes,
-               **up)
+                                             density=2700.0), elements=20, bodies=bodies,
+               modes=modes, **up)
     model.revolute(base, (0, 0, 1) if flat else turned[:, 2])
     car = model.node("car", at(1.2), "translation")
     model.point_mass("car mass", car, 0.3)
@@ -114,12 +114,11 @@ def swinging(bodies=1, flat=True, turned=None, modes=4, **rub):
 @pytest.mark.filterwarnings("ignore")
 def test_work_of_friction_is_energy_lost():
     """Of order 2 in the step; the same in general position, and along several bodies."""
-    ways, left = [], []
+    left = []
     for h in (2e-3, 1e-3):
         result = simulate(swinging(), h, 0.3)
         energy = sum(result[f"energy.{one}"] for one in ("kinetic", "strain", "potential"))
         left.append(np.abs(energy - energy[0] - result["rub.work"]).max())
-        ways.append(result["runs.way"][-1])
     assert result["rub.work"][-1] < -0.01
     assert left[1] < 3e-5 and left[1] < left[0] / 3
     force, normal = result["runs.thrust"], result["runs.normal_force"]
@@ -131,8 +130,8 @@ def test_work_of_friction_is_energy_lost():
     assert spatial["runs.way"] == pytest.approx(eight, abs=1e-6)
     four = simulate(swinging(bodies=4), 1e-3, 0.3)
     assert four["runs.way"] == pytest.approx(eight, abs=1e-4)
-    fewer = simulate(keep_modes(swinging(), "arm", 2).model, 1e-3, 0.3)
-    assert fewer["runs.way"][-1] == pytest.approx(ways[1], abs=3e-4)
+    fewer = simulate(keep_modes(swinging(modes=8), "arm", 4).model, 1e-3, 0.3)
+    assert fewer["runs.way"][-1] == pytest.approx(result["runs.way"][-1], abs=1e-9)
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -147,20 +146,3 @@ def test_restarts_and_drives():
     result = simulate(model, 1e-2, 1.0)
     lifted = MASS * G * SINE
     assert result["engine.work"][-1] == pytest.approx(-lifted + 0.3 * MASS * G * COSINE, rel=2e-3)
-
-
-def test_refused():
-    model = slope()
-    for build, said in (
-            (lambda: model.friction("runs", 0.3, radius=0.1), "bears no moment: leave radius= out"),
-            (lambda: model.friction("runs", 0.3, arm=0.1), "bears no moment: leave arm= out"),
-            (lambda: model.friction("runs", 0.3, takes="axial"), "takes is of revolute"),
-            (lambda: model.friction("runs", 0.3, reaction=False), "nothing presses"),
-            (lambda: model.stop("runs", lower=0.5, stiffness=1.0), "it starts at 0, beyond"),
-            (lambda: model.actuator("m", joint="runs", what="torque"), "what 'torque' is unknown: use 'force'"),
-            (lambda: model.spring("bead", stiffness=1.0), "spring at 'bead' has one end: give to="),
-            (lambda: model.spring("runs", stiffness=-1.0), "stiffness"),
-            (lambda: model.spring("runs", length=np.nan), "spring of 'runs': length"),
-            (lambda: model.path_joint("bead", "rail", inertia=-1.0), "inertia")):
-        with pytest.raises(InputError, match=said):
-            build()
