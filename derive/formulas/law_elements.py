@@ -74,7 +74,7 @@ def law_element(name: str, summary: str, space: Space, measures: Measures,
     sees : sequence of Symbol
         Numbers that another element keeps, as it has just found them; the matrix takes them as
         constants.
-    """""
+    """
     blocks = measures.blocks
     residual, lost = (_conjugate(space, blocks, forces.rates, values)
                       for values in (forces.forces, forces.lost))

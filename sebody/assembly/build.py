@@ -70,8 +70,9 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     numbering = numbering._replace(
         forces_at=dict(zip(owners, first_force, strict=False)),
         constants_at=dict(zip(owners, rows, strict=True)), bristles={})
+    alone = numbering.free < FEWEST or reads_tangents(model)
     system = System(
-        shared=Shared.of(threads if numbering.free >= FEWEST else 1, work_size(model),
+        shared=Shared.of(1 if alone else threads, work_size(model),
                          LANES * slots, int(own.system["width"].max()) ** 2),
         **own.system, **ports, **series_arrays(numbering.series, numbering.ports, series),
         links=Links(arm_vectors=vectors, **own.links),
@@ -89,6 +90,11 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         damped=np.array([int(any(b.reduced.damping is not None for b in model.bodies.values()))]),
         guarded=_guarded(model, numbering))
     return system, numbering
+
+
+def reads_tangents(model: Mechanism) -> bool:
+    """Tell whether elements read what others have just found, and so wait for these."""
+    return any(load.seen is not None for load in model.loads)
 
 
 def _structure(model: Mechanism, numbering: Numbering, batches: Batches, ends: Ends) -> Structure:

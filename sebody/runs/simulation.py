@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.allocation import allocate
-from sebody.assembly.build import build
+from sebody.assembly.build import build, reads_tangents
 from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
@@ -42,7 +42,7 @@ from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import kicks, start_remarks
 from sebody.runs.steps import MOST_STEPS, OFF_GRID, last_step
 from sebody.runs.teeth import Gears, teeth_remarks
-from sebody.runs.threads import TOO_SMALL, checked_threads, helping, worth_help
+from sebody.runs.threads import IN_ORDER, TOO_SMALL, checked_threads, helping, worth_help
 from sebody.runs.tolerance import UNSIZED, Tolerance, given
 from sebody.runs.variable_steps import FIRST_STEP, begin_steps, natural_step
 
@@ -133,7 +133,8 @@ class Simulation:
         for name, message in misspelt(model).items():
             self.watch.say(f"signal {name}", message)
         if threads > 1 and not self.system.shared.mail.size:
-            self.watch.say("threads", TOO_SMALL.format(threads, self.numbering.free))
+            self.watch.say("threads", (IN_ORDER if reads_tangents(model) else TOO_SMALL).format(
+                threads, self.numbering.free))
         self.seconds = 0.0
         self.failure = ""
         self.exchanges = RowExchanges(self.system, self.state)

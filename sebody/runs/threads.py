@@ -15,6 +15,8 @@ from sebody.engine.system import System
 MOST = 64               # threads
 TOO_SMALL = ("threads = {} is not used: threads share the steps of models with "
              f"{FEWEST} unknowns or more, this one has {{}}")
+IN_ORDER = ("threads = {} is not used: friction along a path reads the tangent that the path has "
+            "just found, so elements are evaluated one after another")
 WORTH_IT = 10_000       # unknowns times steps of a short piece of a run, which takes 2 ms or more
 REST = 1e-4             # seconds after which a helper that found no work looks again
 _SHARE = CFUNCTYPE(c_int64, c_void_p, c_void_p, c_int64, c_int64)   # releases Python's lock
