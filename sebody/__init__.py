@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from sebody.results.result import Result
     from sebody.runs.accuracy import simulate_within
     from sebody.runs.schemes import generalized_alpha, hht
-    from sebody.runs.simulation import Simulation, simulate
+    from sebody.runs.simulation import Simulation
     from sebody.runs.tolerance import Tolerance
+    from sebody.runs.whole_runs import simulate
 
 __all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
            "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",

@@ -31,6 +31,7 @@ from sebody.model.hinges import check_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, stretch
 from sebody.model.parts import Element
+from sebody.model.switching import refuse_switches
 
 DENSE_LIMIT = 24        # unknowns above which elimination by blocks is faster than an inverse
 
@@ -50,6 +51,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     if not (model.bodies or model.rigid_bodies):
         raise InputError("the model has no body: add one with model.superelement(...) or "
                          "model.rigid_body(...)")
+    refuse_switches(model)
     check_joints(model)
     check_grounded(model)
     numbering = number(model)

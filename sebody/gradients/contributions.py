@@ -22,8 +22,9 @@ from sebody.gradients.simplifications import Amplitude, Deformation, Motion
 from sebody.gradients.support import refuse_laws, refuse_model, refuse_scheme
 from sebody.model.model import Model
 from sebody.model.variants import with_options
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
+from sebody.runs.whole_runs import simulate
 from sebody.small_motion.moved_states import ADDED_UP, UNMOVED
 
 

@@ -3,10 +3,13 @@
 from collections.abc import Callable
 from copy import copy
 from functools import wraps
-from inspect import isfunction
-from typing import ParamSpec, TypeVar
+from inspect import Parameter, isfunction, signature
+from typing import ParamSpec, TypeVar, cast
 
 from sebody.basics.spelling import refuse_arguments
+from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element, Joint
+from sebody.model.switching import note
 
 Arguments = ParamSpec("Arguments")
 Built = TypeVar("Built")
@@ -30,13 +33,21 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
     What it adds is taken out again; DOF blocks that exist are changed only when nothing more is
     checked.
     """
+    own = {name: one for name, one in signature(build).parameters.items()
+           if one.kind is not Parameter.VAR_KEYWORD}
+    acting = "acting" in signature(build).parameters
+
     @wraps(build)
     def built(*args: Arguments.args, **named: Arguments.kwargs) -> Built:
         model, *_ = args
         kept = {name: copy(value) for name, value in vars(model).items()
                 if isinstance(value, dict | list | set)}
         try:
-            return build(*args, **named)
+            made = build(*args, **named)
+            if acting:
+                note(cast(Mechanism, model), cast(Element | Joint, made).name,
+                     {key: value for key, value in named.items() if key not in own})
+            return made
         except BaseException as error:
             vars(model).update(kept)
             if isinstance(error, TypeError):

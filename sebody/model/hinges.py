@@ -175,10 +175,11 @@ def _common_axis(model: Mechanism, a: Node, b: Node, what: str) -> NDArray | tup
 
 
 def _between(model: Mechanism, kind: str) -> dict[frozenset, list[Joint]]:
-    """Joints by what they are between."""
+    """Joints that always act, by what they are between."""
     found: dict[frozenset, list[Joint]] = {}
     for joint in model.joints:
-        if joint.kind not in ("drive", "distance", "path") and all(
+        if joint.kind not in ("drive", "distance", "path") and (
+                joint.name not in model.switches) and all(
                 getattr(node, kind) is not None for node in (joint.node, joint.to)):
             found.setdefault(_key(joint.node, joint.to, kind), []).append(joint)
     return found

@@ -20,10 +20,14 @@ from sebody.model.parts import (
     Element,
     Joint,
     Node,
+    Way,
     positions,
     rotations,
 )
 from sebody.model.sharing import can_share, share
+from sebody.model.time_functions import TimeFunction
+
+STILL = TimeFunction((0.0,), ((0.0,),))     # of drives that hold what they would move
 
 
 class Equations(NamedTuple):
@@ -33,6 +37,7 @@ class Equations(NamedTuple):
     attachments: tuple[Attachment, ...]
     constants: Mapping[str, float | NDArray]
     multipliers: int
+    time_function: TimeFunction | None = None
 
 
 def named(model: Mechanism, name: str | None, what: str, a: Node) -> str:
@@ -91,6 +96,18 @@ def turn_together(model: Mechanism, a: Node, b: Node) -> list[Equations]:
         return [Equations("planar_aligned", rotations(a, b), {}, 1)]
     e, n, m = np.eye(3)
     return [parallel(a, b, (e, n, m)), perpendicular(a, b, m, n)]
+
+
+def locked(model: Mechanism, a: Node, b: Node) -> list[Equations]:
+    """Two nodes keep a relative pose, at first that of the start; see `phases.locked_as_now`."""
+    equations = []
+    for e in np.eye(model.dimension):
+        way = Way.of(a, b, Axes(b, e[:, None]))
+        equations.append(Equations(model.kind_of("slide_drive"), way.attachments,
+                                   {"e": way.direction, "start": way.start}, 1, STILL))
+    if model.planar:
+        return [*equations, Equations("planar_turn_drive", rotations(a, b), {}, 1, STILL)]
+    return equations + turn_together(model, a, b)
 
 
 def on_line(model: Mechanism, what: str, a: Node, b: Node, normals: tuple[NDArray, ...]

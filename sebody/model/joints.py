@@ -8,14 +8,18 @@ and its moment are those on `node`, the first of its arguments, from `to` or the
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.basics.errors import InputError
+from sebody.model.acting import Acting
 from sebody.model.arguments import along, axes, chosen_name, dof_block, known, turning_axes
 from sebody.model.joint_equations import (
     Equations,
     add_joint,
+    locked,
     named,
     on_line,
     parallel,
@@ -56,7 +60,8 @@ def fix(model: Mechanism, node: Node | str, what: str = "both") -> None:
 
 def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.0),
              to: Node | str | None = None, explicit: bool = False,
-             name: str | None = None) -> Joint:
+             name: str | None = None,
+             **acting: Unpack[Acting]) -> Joint:
     """Revolute joint about an axis through a node, to the ground or to another node.
 
     Its angle is that of `node` against `to`, about the axis by the right hand, 0 at the start; so
@@ -75,6 +80,8 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
         Hold the place by multipliers, not by a shared or fixed position.
     name : str, optional
         Of its results, ``<name>.angle`` and the like; by default ``revolute at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -89,6 +96,7 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
     a, b = pair(model, node, to, what)
     vectors = turning_axes(model, axis, what, a)
     name = named(model, name, what, a)
+    explicit = True if acting else explicit
     equations = together(model, a, b, to, what, explicit)
     shared = () if equations else ("position",)
     if vectors:
@@ -99,7 +107,8 @@ def revolute(model: Mechanism, node: Node | str, axis: ArrayLike = (0.0, 0.0, 1.
 
 def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayLike,
               to: Node | str | None = None, explicit: bool = False,
-              name: str | None = None) -> Joint:
+              name: str | None = None,
+              **acting: Unpack[Acting]) -> Joint:
     """Universal joint: `axis`, fixed in `node`, and `other`, fixed in `to`, stay normal.
 
     Turns about both axes are free and none is measured: limits, drives and sensors are of revolute
@@ -117,6 +126,8 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
         Hold the place by multipliers, not by a shared or fixed position.
     name : str, optional
         Of its results, ``<name>.force`` and the like; by default ``universal at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -136,6 +147,7 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
                          f"{np.degrees(np.arccos(np.clip(abs(n @ e), 0, 1))):.4g} degrees: "
                          "give two that are normal to each other")
     name = named(model, name, what, a)
+    explicit = True if acting else explicit
     equations = together(model, a, b, to, what, explicit)
     shared = () if equations else ("position",)
     return add_joint(model, what, name, a, b, [*equations, perpendicular(a, b, e, n)],
@@ -143,7 +155,8 @@ def universal(model: Mechanism, node: Node | str, axis: ArrayLike, other: ArrayL
 
 
 def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
-                to: Node | str | None = None, name: str | None = None) -> Joint:
+                to: Node | str | None = None, name: str | None = None,
+                **acting: Unpack[Acting]) -> Joint:
     """Cylindrical joint: `node` slides along and turns about an axis that is fixed in it.
 
     Its displacement and angle are those of `node` against `to` (the ground), along and about the
@@ -159,6 +172,8 @@ def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
         The other node, the ground by default.
     name : str, optional
         Of its results, ``<name>.displacement`` and the like; by default ``cylindrical at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -179,7 +194,8 @@ def cylindrical(model: Mechanism, node: Node | str, axis: ArrayLike,
 
 
 def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
-              to: Node | str | None = None, name: str | None = None) -> Joint:
+              to: Node | str | None = None, name: str | None = None,
+              **acting: Unpack[Acting]) -> Joint:
     """Prismatic joint: `node` slides along an axis that is fixed in it, and turns with `to`.
 
     Its displacement is that of `node` against `to` (the ground) along the axis, 0 at the start; so
@@ -195,6 +211,8 @@ def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
         The other node, the ground by default.
     name : str, optional
         Of its results, ``<name>.displacement`` and the like; by default ``prismatic at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -214,7 +232,8 @@ def prismatic(model: Mechanism, node: Node | str, axis: ArrayLike,
 
 
 def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
-           to: Node | str | None = None, name: str | None = None) -> Joint:
+           to: Node | str | None = None, name: str | None = None,
+           **acting: Unpack[Acting]) -> Joint:
     """Point on a line: `node` slides along an axis through its place, fixed in `to`.
 
     Its displacement is that of `node` against `to` (the ground) along the axis, 0 at the start; so
@@ -231,6 +250,8 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
         The other node, the ground by default.
     name : str, optional
         Of its results, ``<name>.displacement`` and the like; by default ``slider at <to>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -251,7 +272,8 @@ def slider(model: Mechanism, node: Node | str, axis: ArrayLike,
 
 
 def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
-                 to: Node | str | None = None, name: str | None = None) -> Joint:
+                 to: Node | str | None = None, name: str | None = None,
+                 **acting: Unpack[Acting]) -> Joint:
     """Planar joint: `to` stays in a plane through and fixed in `node`, and parallel to it.
 
     Its angle is that of `node` against `to` about the normal, 0 at the start.
@@ -265,6 +287,8 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
         The other node, the ground by default.
     name : str, optional
         Of its results, ``<name>.angle`` and the like; by default ``planar at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -286,7 +310,8 @@ def planar_joint(model: Mechanism, node: Node | str, normal: ArrayLike,
 
 
 def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
-              explicit: bool = True, name: str | None = None) -> Joint:
+              explicit: bool = True, name: str | None = None,
+              **acting: Unpack[Acting]) -> Joint:
     """Spherical joint as an explicit constraint with one multiplier for each direction.
 
     For comparison: `fix(node, "position")`, or a second node made with ``at=``, is the same
@@ -302,6 +327,8 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
         Hold the place by multipliers, not by a shared or fixed position.
     name : str, optional
         Of its results, ``<name>.force`` and the like; by default ``spherical at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -315,25 +342,30 @@ def spherical(model: Mechanism, node: Node | str, to: Node | str | None = None,
     what = "spherical joint"
     a, b = pair(model, node, to, what, ("position",))
     name = named(model, name, what, a)
+    explicit = True if acting else explicit
     equations = together(model, a, b, to, what, explicit)
     return add_joint(model, what, name, a, b, equations, Axes.of(a),
                   () if equations else ("position",))
 
 
 def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
-         explicit: bool = False, name: str | None = None) -> Joint:
+         explicit: bool = False, name: str | None = None,
+         **acting: Unpack[Acting]) -> Joint:
     """Join two nodes rigidly: they share both blocks, or with ``explicit=True`` by equations.
 
     Parameters
     ----------
     node : Node or str
-        At the place of `to`; for nodes apart there is `attach`.
+        At the place of `to`; for nodes apart there is `attach`. With `from_` anywhere: it locks the
+        pose of that time.
     to : Node or str, optional
         The other node, the ground by default.
     explicit : bool
         Hold place and rotation by multipliers.
     name : str, optional
         Of its results, ``<name>.moment`` and the like; by default ``weld at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -346,6 +378,9 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
     """
     a, b = pair(model, node, to, "weld")
     name = named(model, name, "weld", a)
+    if "from_" in acting:
+        return add_joint(model, "weld", name, a, b, locked(model, a, b), Axes.of(a))
+    explicit = True if acting else explicit
     equations = together(model, a, b, to, "weld", explicit)
     shared: tuple[str, ...] = () if equations else ("position",)
     one, other = dof_block(a, "rotation"), dof_block(b, "rotation")
@@ -361,7 +396,8 @@ def weld(model: Mechanism, node: Node | str, to: Node | str | None = None,
 
 
 def distance(model: Mechanism, node: Node | str, to: Node | str,
-             name: str | None = None) -> Joint:
+             name: str | None = None,
+             **acting: Unpack[Acting]) -> Joint:
     """Two points keep the distance they start at: a massless rod with ball joints.
 
     Its force is that on `node`, along the rod; tension pulls `node` towards `to`.
@@ -372,6 +408,8 @@ def distance(model: Mechanism, node: Node | str, to: Node | str,
         Apart from each other.
     name : str, optional
         Of its results, ``<name>.force`` and the like; by default ``distance at <node>``.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.basics.units import parsed_units
+from sebody.model.acting import Switch
 from sebody.model.control_parts import Controller, Sensor
 from sebody.model.parts import (
     Beam,
@@ -56,6 +57,8 @@ class Mechanism:
     sensors: dict[str, Sensor] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
     controllers: dict[str, Controller] = field(default_factory=dict, init=False)
+    switches: dict[str, Switch] = field(default_factory=dict, init=False)   # of what lets go, locks
+    is_phase: bool = field(default=False, init=False)   # of a run: what acts does not change
     gravity_field: NDArray = field(init=False)
     plane: Plane | None = field(default=None, init=False)   # of a planar model made from a spatial
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, known, warn_of_degrees
 from sebody.model.bearing_tables import BearingTable
 from sebody.model.hinges import about, check_axes
@@ -22,7 +23,8 @@ from sebody.model.shafts import shaft_axes
 
 def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = None,
            stiffness: float = 0.0, damping: float = 0.0, length: float | None = None,
-           cubic: float = 0.0, name: str | None = None) -> Element:
+           cubic: float = 0.0, name: str | None = None,
+           **acting: Unpack[Acting]) -> Element:
     """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch.
 
     Parameters
@@ -34,6 +36,8 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
         k, c and k3 [force/length, force time/length, force/length^3].
     length : float, optional
         Length without force [length], along a path the way; that of the start by default.
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -82,7 +86,8 @@ def _way_spring(model: Mechanism, joint: Joint, stiffness: float, damping: float
 def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float = 0.0,
                    damping: float = 0.0, axis: ArrayLike | None = None,
                    to: Node | str | None = None, rest: float = 0.0, cubic: float = 0.0,
-                   name: str | None = None) -> Element:
+                   name: str | None = None,
+                   **acting: Unpack[Acting]) -> Element:
     """Spring and damper about the axis of a revolute joint: ``M = k u + k3 u^3 + c u'``.
 
     Turns are counted: in space from step to step, so in one step less than half a turn.
@@ -99,6 +104,8 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
         there is none.
     rest : float
         Angle of `node` against `to` without moment, zero at the start [rad].
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -126,7 +133,8 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
             rotation: ArrayLike | None = None, name: str | None = None,
             axis: ArrayLike | None = None,
             table: Mapping[str, ArrayLike] | str | Path | None = None,
-            speed: float | None = None) -> Element:
+            speed: float | None = None,
+            **acting: Unpack[Acting]) -> Element:
     """Springs and dampers along and about axes that turn with `node`, between nodes at one point.
 
     Each coefficient is a number, or one for each axis. Moments follow the sine of the angles:
@@ -156,6 +164,8 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
         with a spin and analyses over the speed read the table at the speed of the shaft.
     speed : float, optional
         At which the table is read once for all, as runs over time need [rad/time].
+    **acting
+        `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
     Raises
     ------

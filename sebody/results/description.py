@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.fem import materials
-from sebody.model import mechanism, numbering, parts, time_functions
+from sebody.model import acting, mechanism, numbering, parts, time_functions
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering
 from sebody.reduction import invariants, preload, recovery
@@ -27,7 +27,7 @@ def _kinds(*modules: ModuleType) -> dict[str, type]:
             if isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))}
 
 
-KINDS = _kinds(parts, time_functions, mechanism, numbering, invariants, preload, recovery,
+KINDS = _kinds(acting, parts, time_functions, mechanism, numbering, invariants, preload, recovery,
                materials)
 
 

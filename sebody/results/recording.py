@@ -37,6 +37,14 @@ class Start(NamedTuple):
     lost: float = 0.0       # kinetic energy that fitting the velocities of that state took
 
 
+class Event(NamedTuple):
+    """Parts of a model that let go or lock in a run."""
+
+    time: float
+    what: str       # which, and whether they let go or lock
+    lost: float     # energy that the impulse takes, and that is kept in what lets go
+
+
 @dataclass(eq=False, repr=False)
 class Recording:
     """A model, its arrays, and the states a run has recorded."""
@@ -53,6 +61,7 @@ class Recording:
     error: float | None = None      # estimate over allowed error: see sebody.runs.accuracy
     stability: str = ""             # of an equilibrium, see `sebody.runs.loading`
     all_seconds: float = 0.0        # including runs that were repeated for accuracy
+    events: tuple[Event, ...] = ()  # what let go and locked
     fields: dict[str, Any] = field(default_factory=dict, init=False, repr=False)    # made so far
     numbers: Any = field(default=None, init=False, repr=False)  # see sebody.results.histories
 
@@ -107,7 +116,10 @@ class Recording:
         columns = ENERGIES.slices(record_counts(self.numbering))
         kinetic, strain, potential = (self.energies[:, columns[name]][:, 0]
                                       for name in ("kinetic", "strain", "potential"))
-        return energy_balance(kinetic, strain, potential, self.recorded("works").sum(axis=1))
+        work, t = self.recorded("works").sum(axis=1), self.recorded("t")[:, 0]
+        for event in self.events:
+            work[t >= event.time] -= event.lost
+        return energy_balance(kinetic, strain, potential, work)
 
     @cached_property
     def forces(self) -> Forces:

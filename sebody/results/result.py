@@ -294,10 +294,12 @@ class Result(Recording):
                          f"{self['constraints.position'].max():.1e}, of their rates "
                          f"{self['constraints.velocity'].max():.1e}")
         lines += [f"normal forces        of {text}" for text in normal_forces(self.model)]
-        laws = {load.name for load in self.model.loads if load.law is not None}     # of none
+        # laws do none, nor do welds that lock
+        idle = {load.name for load in self.model.loads if load.law is not None} | {
+            joint.name for joint in self.model.joints if joint.kind == "weld"}
         lines += [] if is_static(self) else [
             f"work                 {self.recorded('works')[-1, k]:.6g} by {name}"
-            for k, name in enumerate(self.numbering.port_names) if name not in laws]
+            for k, name in enumerate(self.numbering.port_names) if name not in idle]
         if self.stability:
             lines.append(f"stability            {self.stability}")
         if self.error is not None:
@@ -314,6 +316,8 @@ class Result(Recording):
             lines += [f"not taken over       {', '.join(self.start.untaken)}",
                       f"energy lost          {self.start.lost:.6g} at the start, by the impulse "
                       "that makes velocities fit the joints"]
+        lines += [f"at t = {one.time:<14.9g} {one.what}; energy lost {one.lost:.6g}"
+                  for one in self.events]
         if self.start and self.start.redundant:
             lines.append("redundant            constraints of " + ", ".join(self.start.redundant)
                          + f"; multipliers of {', '.join(self.start.shared)} are not unique, given "

@@ -23,10 +23,10 @@ from sebody.reduction.body import ReducedBody
 from sebody.reduction.checks import check_layout, coordinate_names
 from sebody.reduction.invariant_checks import check_shapes
 from sebody.reduction.recovery_checks import check_recovery
-from sebody.results.recording import Start
+from sebody.results.recording import Event, Start
 
 NOTES = {"seconds": float, "failure": str, "warnings": list[str], "error": float | None,
-         "all_seconds": float, "stability": str, "start": list | None,
+         "all_seconds": float, "stability": str, "start": list | None, "events": list[list],
          "advice": dict[str, list[str]],
          "checksums": dict[str, int]}
 _PLAIN = {float: (int, float), int: (int,), str: (str,), bool: (bool,)}
@@ -83,6 +83,9 @@ def check_notes(notes: Mapping[str, Any]) -> None:
                       and all(_fits(names, list[str]) for names in start[1:4])
                       and _fits(start[4], float)):
         raise ValueError(f"it has {inputs.shown(start)} for its start")
+    for event in notes["events"]:
+        if len(event) != len(Event._fields) or not all(map(_fits, event, (float, str, float))):
+            raise ValueError(f"it has {inputs.shown(event)} among its events")
 
 
 def check_tuple(kind: type[NamedTuple], values: list) -> None:

@@ -26,15 +26,15 @@ from sebody.model.numbering import Numbering
 from sebody.results import hdf5
 from sebody.results.description import described, restored
 from sebody.results.postprocessing import Forces
-from sebody.results.recording import EVALUATED, Recording, Start
+from sebody.results.recording import EVALUATED, Event, Recording, Start
 from sebody.results.saved_checks import check_notes, member_lengths
 from sebody.results.units import unit
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
-VERSION = 6
+VERSION = 7
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 # members of a Recording
-NOTES = "seconds", "failure", "warnings", "error", "all_seconds", "stability"
+NOTES = "seconds", "failure", "warnings", "error", "all_seconds", "stability", "events"
 WHAT, REPEAT = "results file", "run the model again"
 REMEDY = "give one written by Result.save; 'sebody inspect' reads body files"
 NUMBERS = Member((None,), finite=False)     # of the model's arrays
@@ -143,6 +143,7 @@ def _made(make: Callable[..., Any], notes: dict, found: dict[str, NDArray], mode
     made = make(model, numbering, None, None, found["rows"], start=Start(*start) if start else None,
                 **{name: notes[name] for name in NOTES})
     made.warnings = tuple(made.warnings)
+    made.events = tuple(Event(*one) for one in made.events)
     sums = np.zeros((len(made.rows), numbering.total))
     sums[:, numbering.free:] = found["supports"]
     # cached properties, which are not evaluated any more

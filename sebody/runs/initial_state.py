@@ -29,10 +29,16 @@ ROUNDED = 1e-12         # of positions or a radian in a step, that is rounding: 
 HEAVY = 1e10            # added mass, relative, that keeps velocities the user gave
 
 
-def begin(model: Mechanism, system: System, numbering: Numbering, state: State) -> Start:
+def begin(model: Mechanism, system: System, numbering: Numbering, state: State,
+          goes_on: bool = False) -> Start:
     """Fit the velocities to the constraints, and ask for accelerations and multipliers.
 
     The time loop solves for these before its first step, see `sebody.engine.restart`.
+
+    Parameters
+    ----------
+    goes_on : bool
+        Whether a run goes on, of which initial velocities and speeds of drives are past.
 
     Raises
     ------
@@ -40,13 +46,14 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
         Initial positions violate a joint, given velocities do not fit, constraints contradict
         each other, or an unknown has no mass.
     """
-    set_loads(system, state.frames, state.loads, 0.0)
+    time = float(state.clock.time)
+    set_loads(system, state.frames, state.loads, time)
     state.loads_old[:] = state.loads
     move_prescribed(system, state)
     place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     multipliers = np.flatnonzero(system.is_multiplier)
     masses = _masses(system, state)
-    if did := fault(model, 0.0):
+    if did := fault(model, time):
         raise InputError(f"{WHAT} cannot be evaluated: {did}")
     _refuse_overflow(state.residual, masses, numbering)
     residuals = state.residual[multipliers]
@@ -57,9 +64,10 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State) 
     system.regularized[0], system.massless[0] = int(bool(solver.redundant)), int(solver.massless)
     tune(model, system, numbering, state,
          _resisting(system, state) if solver.massless else masses)
-    changed = follow_drives(model, system, numbering, state, masses,
-                            _rates(system, state, multipliers))
-    changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers)
+    changed = {} if goes_on else follow_drives(model, system, numbering, state, masses,
+                                               _rates(system, state, multipliers))
+    changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers,
+                               not goes_on)
     if solver.redundant:
         _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames
@@ -103,7 +111,7 @@ def _check_accelerations(system: System, numbering: Numbering, state: State,
     place_dependent(system.links, state.q, state.v, state.a, state.R, state.turns)
     evaluate(system, state, RESIDUAL, ACCELERATION, WHAT)
     to_body_axes(system, state.frames, state.residual, False)
-    solver.check(state.residual[:numbering.free].copy())
+    solver.check(state.residual[:numbering.free].copy(), float(np.abs(state.v).max()))
 
 
 def _masses(system: System, state: State) -> csc_matrix:
@@ -166,7 +174,7 @@ def _check_rates(rates: NDArray, size: NDArray, multipliers: NDArray, model: Mec
 
 def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, state: State,
                     masses: csc_matrix, solver: Solver,
-                    multipliers: NDArray) -> dict[str, float]:
+                    multipliers: NDArray, keeps_given: bool) -> dict[str, float]:
     """Fit velocities by the smallest change in the norm of kinetic energy; given ones are kept.
 
     Returns the DOF blocks whose velocity changed, and by how much.
@@ -178,7 +186,7 @@ def _fit_velocities(model: Mechanism, system: System, numbering: Numbering, stat
     if np.abs(rates).max() <= SMALL * size:
         return {}
     dof_blocks = [t for t in model.dof_blocks() if t.solved and t in numbering.dof_blocks]
-    given = [t for t in dof_blocks if t.given]
+    given = [t for t in dof_blocks if t.given and keeps_given]
     held = np.array([i for dof_block in given for i in coordinates(numbering, dof_block)],
                     dtype=int)
     demand = np.zeros(numbering.free)

@@ -15,6 +15,7 @@ from sebody.model.numbering import Numbering
 from sebody.runs.kkt_solver import LeastSquares, Relaxed, Scaled
 
 WEAK = 1e-6             # pivot of a redundant constraint; of another one, its strength
+ROUNDED = 1e-12         # of squares of velocities, what is left of them where they cancel
 CONTRADICTION = 1e-7    # residual that contradicting constraints leave, relative to the largest
 MASSLESS = 1e-13        # inertia of a motion that has none, relative to that of its body
 SHARED = 0.1            # residual of a constraint that has part in a contradiction, of the largest
@@ -130,13 +131,15 @@ class Solver:
             self._check_mass(system, resisting)
             self._find_redundant(matrix, system)
 
-    def check(self, residual: NDArray) -> None:
+    def check(self, residual: NDArray, speed: float) -> None:
         """Refuse redundant constraints that demand what no accelerations give.
 
         Parameters
         ----------
         residual : (n,)
             Without accelerations and multipliers.
+        speed : float
+            The largest velocity: constraints demand its square, which cancels where they agree.
 
         Raises
         ------
@@ -145,7 +148,9 @@ class Solver:
         """
         relaxed = self.regularized
         answer, left = relaxed.least(residual)
-        if left.max() <= CONTRADICTION * max(np.abs(relaxed.scale * residual).max(), 1e-300):
+        rounding = ROUNDED * speed**2 * relaxed.scale[self.multiplying].max(initial=0.0)
+        if left.max() <= max(CONTRADICTION * np.abs(relaxed.scale * residual).max(), rounding,
+                             1e-300):
             return
         parties = parties_of(self.names, np.where(self.multiplying, left, 0.0))
         gap = self._without_force(relaxed.scale * (residual - relaxed.matrix @ answer))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -13,9 +12,8 @@ from sebody.assembly.allocation import allocate
 from sebody.assembly.build import build, reads_tangents
 from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
-from sebody.basics.errors import InputError, Interrupted, LimitWarning, SimulationError
+from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.basics.progress import showing
-from sebody.basics.spelling import naming_arguments
 from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
@@ -33,7 +31,7 @@ from sebody.runs.given_start import energy_lost, take
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
 from sebody.runs.limits.watch import Watch
-from sebody.runs.planning import LOGGED, Plan, StepLog, planned
+from sebody.runs.planning import Plan, StepLog
 from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
 from sebody.runs.row_exchanges import RowExchanges
@@ -50,8 +48,6 @@ LOOK = 0.2              # seconds in the loop until it returns to Python, which 
 FIRST_CHUNK = 1         # steps before the first return
 GROWTH = 8.0            # largest factor from one chunk of steps to the next
 FEW = 64                # most steps of a short piece of a run
-COARSER = 30.0          # tolerance of the run that plans steps, relative to that of the run
-COARSEST = 1e-2         # largest relative tolerance of that run, unless the run's own is larger
 
 
 class Simulation:
@@ -376,45 +372,3 @@ class Standstill(Simulation):
     """The start of a model that no steps follow: its loads are as they were given at any time."""
 
     gives_loads_to_steps = False
-
-
-@naming_arguments
-def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
-             output_every: int = 1, progress: Callable[[float], None] | bool | None = None,
-             tolerance: Tolerance | None = None, start: Result | None = None,
-             threads: int = 1) -> Result:
-    """Run a model from 0 to `t_end`; see `Simulation` for the arguments and exceptions.
-
-    With a tolerance, steps are planned for the whole run by a coarser one that comes first, so that
-    they change as little as its errors allow: the energy of conservative motion drifts where steps
-    change with its phase, as those of a `Simulation` do, which does not know its end. A progress
-    bar counts the two runs.
-    """
-    with showing(progress, t_end) as show:
-        run = planned_simulation(model, h, t_end, scheme, output_every, show, tolerance, start,
-                                 threads)
-        return run.run_to(t_end, show).result()
-
-
-def planned_simulation(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
-                       output_every: int = 1, progress: Callable[[float], None] | None = None,
-                       tolerance: Tolerance | None = None, start: Result | None = None,
-                       threads: int = 1) -> Simulation:
-    """The simulation that `simulate` runs to `t_end`: with a tolerance, its steps are planned.
-
-    If the run with a larger tolerance fails, errors choose the steps one by one.
-    """
-    plan = Plan()
-    if (asked := given(tolerance)) is not None:
-        coarser = max(1.0, min(COARSER, COARSEST / max(asked.relative, 1e-300)))
-        local = Tolerance(*(coarser * value for value in asked))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", LimitWarning)       # what is wrong there need not stay
-            pilot = Simulation(model, h, scheme, 1, local, start, threads, Plan(logged=LOGGED))
-            try:
-                pilot.run_to(t_end, progress)
-                schedule = planned(pilot.log.rows(), pilot.system.corners, coarser)
-                plan = Plan(schedule, seconds=pilot.seconds)
-            except SimulationError:
-                plan = Plan(seconds=pilot.seconds)
-    return Simulation(model, h, scheme, output_every, tolerance, start, threads, plan)

@@ -4,6 +4,7 @@ A payload is dropped, a latch opens or a clutch locks where one model follows an
 one lacks a joint, or has one more, and starts at the end of the first.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -16,14 +17,14 @@ from sebody.model.extent import extent
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, record_counts, stretch
 from sebody.model.parts import DofBlock
-from sebody.results.result import Result
+from sebody.results.recording import Recording
 
 APART = 1e-9        # of the extent: by which nodes of the same name may differ as they are built
 REMEDY = "give the Result of a model with nodes and bodies of the same names, built in one place"
 
 
 class Side(NamedTuple):
-    """A model, its numbering, and a row of its states."""
+    """A model, its numbering, and a row of its states, or several."""
 
     model: Mechanism
     numbering: Numbering
@@ -31,10 +32,10 @@ class Side(NamedTuple):
 
     def part(self, name: str) -> NDArray:
         """A part of the row, to be read or written."""
-        return self.row[RECORD.slices(record_counts(self.numbering))[name]]
+        return self.row[..., RECORD.slices(record_counts(self.numbering))[name]]
 
 
-def have_same_order(model: Mechanism, numbering: Numbering, given: Result) -> bool:
+def have_same_order(model: Mechanism, numbering: Numbering, given: Recording) -> bool:
     """Tell whether states of a model and of a result have the same numbers in the same places."""
     return _order(Side(model, numbering, given.rows[-1])) == _order(
         Side(given.model, given.numbering, given.rows[-1]))
@@ -48,7 +49,7 @@ def _order(side: Side) -> tuple[Any, ...]:
 
 
 def taken_over(model: Mechanism, numbering: Numbering, start: NDArray,
-               given: Result) -> tuple[NDArray, tuple[str, ...]]:
+               given: Recording) -> tuple[NDArray, tuple[str, ...]]:
     """A row of `layout.RECORD` with what a model has in common with that of a result.
 
     Nodes, modes and frames of bodies, numbers that joints, springs, contacts and controllers keep,
@@ -58,7 +59,7 @@ def taken_over(model: Mechanism, numbering: Numbering, start: NDArray,
     ----------
     start : (numbers of a state,)
         The row of the model as it is built.
-    given : Result
+    given : Recording
         The last state of which is taken.
 
     Returns
@@ -80,9 +81,15 @@ def taken_over(model: Mechanism, numbering: Numbering, start: NDArray,
                          f"space: {REMEDY}")
     if not model.nodes.keys() & old.model.nodes.keys():
         raise InputError(f"start is a state of another model, with no node in common: {REMEDY}")
-    left = [*_nodes(new, old), *_ways(new, old), *_bodies(new, old), *_kept(new, old)]
+    left = take_states(new, old)
     names = (_element_names(side.model) for side in (new, old))
     return new.row, (*left, *_alone("joint, load or rigid body", *names))
+
+
+def take_states(new: Side, old: Side) -> list[str]:
+    """Take over what has the same names, but for works and multipliers; what cannot be, in words.
+    """
+    return [*_nodes(new, old), *_ways(new, old), *_bodies(new, old), *_kept(new, old)]
 
 
 def _element_names(model: Mechanism) -> list[str]:
@@ -116,11 +123,11 @@ def _nodes(new: Side, old: Side) -> Iterator[str]:
 def _block(new: Side, old: Side, block: DofBlock, was: DofBlock) -> None:
     """Take coordinates, rates and the rotation matrix of a block over."""
     for name in ("q", "v", "a"):
-        new.part(name)[stretch(new.numbering, block)] = old.part(name)[
-            stretch(old.numbering, was)]
+        new.part(name)[..., stretch(new.numbering, block)] = old.part(name)[
+            ..., stretch(old.numbering, was)]
     if block in new.numbering.rotations:
         at, before = 9 * new.numbering.rotations[block], 9 * old.numbering.rotations[was]
-        new.part("R")[at:at + 9] = old.part("R")[before:before + 9]
+        new.part("R")[..., at:at + 9] = old.part("R")[..., before:before + 9]
 
 
 def _ways(new: Side, old: Side) -> Iterator[str]:
@@ -144,10 +151,11 @@ def _bodies(new: Side, old: Side) -> Iterator[str]:
             continue
         at, before = new.numbering.modes[name], old.numbering.modes[name]
         for part in ("q", "v", "a"):
-            new.part(part)[at:at + modes] = old.part(part)[before:before + modes]
+            new.part(part)[..., at:at + modes] = old.part(part)[..., before:before + modes]
         if (body.frame, len(body.nodes)) == (other.frame, len(other.nodes)):
             frame = 9 * list(old.model.bodies).index(name)
-            new.part("frames")[9 * number:9 * number + 9] = old.part("frames")[frame:frame + 9]
+            new.part("frames")[..., 9 * number:9 * number + 9] = old.part("frames")[
+                ..., frame:frame + 9]
     yield from _alone("body", new.model.bodies, old.model.bodies)
 
 
@@ -156,7 +164,7 @@ def _kept(new: Side, old: Side) -> Iterator[str]:
     own, others = (_places(side) for side in (new, old))
     for key, places in own.items():
         if key in others and len(others[key]) == len(places):
-            new.part("frames")[places] = old.part("frames")[others[key]]
+            new.part("frames")[..., places] = old.part("frames")[..., others[key]]
         elif key[0] != "element" or key in others:
             yield f"the state of {key[1]} (not in the start)"
 
@@ -187,3 +195,38 @@ def _alone(what: str, own: Iterable[str], others: Iterable[str]) -> Iterator[str
 
 def _shown(point: NDArray) -> str:
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+
+
+def take_works(new: Side, old: Side) -> None:
+    """Take over what has been done by ports of the same names."""
+    _by_name(new, old, "works", *({key: (k, 1) for key, k in numbered(
+        side.numbering.port_names)} for side in (new, old)))
+
+
+def take_multipliers(new: Side, old: Side) -> None:
+    """Take over the multipliers of constraints of the same names."""
+    _by_name(new, old, "q", *({key: (side.numbering.multipliers[one], one.multipliers)
+                               for key, one in named(side.model.constraints)}
+                              for side in (new, old)))
+
+
+def numbered(names: Iterable[str]) -> Iterator[tuple[tuple[str, int], int]]:
+    """Names, each with how often it came before, and their places."""
+    found: Counter[str] = Counter()
+    for k, name in enumerate(names):
+        yield (name, found[name]), k
+        found[name] += 1
+
+
+def named(elements: Iterable[Any]) -> Iterator[tuple[tuple[str, int], Any]]:
+    """Elements by their names and by how many of the same name come before."""
+    elements = list(elements)
+    for key, k in numbered(one.name for one in elements):
+        yield key, elements[k]
+
+
+def _by_name(new: Side, old: Side, part: str, own: dict, others: dict) -> None:
+    """Take numbers of the same names over; of each, where they begin and how many there are."""
+    for key in own.keys() & others.keys():
+        (at, size), (before, _) = own[key], others[key]
+        new.part(part)[..., at:at + size] = old.part(part)[..., before:before + size]

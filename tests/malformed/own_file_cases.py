@@ -208,7 +208,7 @@ RESULT = {
     "no notes": Packed("no text notes", without("sebody/notes")),
     "an unknown member": Packed("has a member 'colour', which is unknown", member(
         "sebody/colour", np.zeros(2))),
-    "a version in words": Packed("is of version two, this program reads 6", text(
+    "a version in words": Packed("is of version two, this program reads 7", text(
         "sebody/notes", lambda said: said.update({"version": "two"}))),
     "notes without a failure": Packed("is damaged or no results file", text(
         "sebody/notes", lambda said: said.pop("failure") and None)),

@@ -18,7 +18,7 @@ from sebody import (
 from sebody.analysis import resume, save_state
 from sebody.runs.accuracy import difference
 from sebody.runs.planning import LOGGED, Plan, planned
-from sebody.runs.simulation import planned_simulation
+from sebody.runs.whole_runs import planned_simulation
 from sebody.scenes import hinged_beam, spherical_beam_strong
 
 GRAVITY, INERTIA = 9.81, 4.0 / 3.0

@@ -16,9 +16,9 @@ from sebody.model.numbering import Numbering
 from sebody.results.recording import Recording
 from sebody.results.result import Result
 from sebody.runs.limits.watch import Watch
-from sebody.runs.simulation import planned_simulation
 from sebody.runs.statics import equilibrium
 from sebody.runs.tolerance import Tolerance
+from sebody.runs.whole_runs import planned_simulation
 
 
 class Run(NamedTuple):

@@ -15,6 +15,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
+from sebody.model.switching import refuse_switches
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
 from sebody.model.variants.flat_bodies import flat_bodies
@@ -59,6 +60,7 @@ def planar(model: Mechanism) -> Variant:
     """
     if checked(model).planar:
         raise InputError("the model is planar already")
+    refuse_switches(model)
     if not model.nodes:
         raise InputError("the model has no nodes, so it has no plane")
     for path in model.paths:

@@ -81,8 +81,11 @@ def _is_free(model: Mechanism, node: Node) -> bool:
 
 
 def _kinds(model: Mechanism, joint: Joint) -> list[str]:
-    """Which DOF blocks of its nodes may become one; none where friction reads the equations."""
-    if any(load.pressed_by is joint for load in model.loads):
+    """Which DOF blocks of its nodes may become one; none where friction reads the equations.
+
+    Nor of a joint that lets go or locks.
+    """
+    if joint.name in model.switches or any(load.pressed_by is joint for load in model.loads):
         return []
     return [kind for kind in ("position", "rotation")
             if _replaced(joint, kind) and _can_share(model, joint, kind)]

@@ -11,7 +11,7 @@ from sebody.model.model import Model
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.craig_bampton import craig_bampton
 from sebody.results.result import Result
-from sebody.runs.simulation import simulate
+from sebody.runs.whole_runs import simulate
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row
 
 SECTION = Section(area=1e-4, inertia_y=8e-10, inertia_z=8e-10, torsion=1.6e-9, youngs_modulus=7e10,

@@ -10,7 +10,8 @@ from sebody.kernels.rotations import NEAR_PI, exp_map
 from sebody.model.model import Model
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.craig_bampton import craig_bampton
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
+from sebody.runs.whole_runs import simulate
 from sebody.scenes.hinged_beam import SECTION
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row
 

@@ -8,7 +8,8 @@ from sebody.fem import straight_beam
 from sebody.kernels.rotations import exp_map
 from sebody.model.model import Model
 from sebody.reduction.craig_bampton import craig_bampton
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
+from sebody.runs.whole_runs import simulate
 from sebody.scenes import spherical_beam_strong
 from sebody.scenes.hinged_beam import SECTION
 from sebody.verify.atlas.finding import REFERENCE, Finding, Row

@@ -6,7 +6,8 @@ from sebody.basics.errors import SimulationError
 from sebody.engine.state import Scheme
 from sebody.model.model import Model
 from sebody.runs.schemes import generalized_alpha, hht
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
+from sebody.runs.whole_runs import simulate
 from sebody.scenes import planar_hinged_beam, spherical_beam_strong
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row
 

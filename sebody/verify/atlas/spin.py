@@ -6,7 +6,7 @@ import numpy as np
 
 from sebody.basics.errors import SimulationError
 from sebody.model.model import Model
-from sebody.runs.simulation import simulate
+from sebody.runs.whole_runs import simulate
 from sebody.scenes import spin_up
 from sebody.small_motion.linearization import modes
 from sebody.verify.atlas.beams import FRAMES, arm, grows, onset, pressed, spinning

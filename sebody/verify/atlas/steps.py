@@ -7,8 +7,9 @@ from scipy.special import ellipk
 from sebody.model.model import Model
 from sebody.runs.planning import Plan
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
+from sebody.runs.whole_runs import simulate
 from sebody.verify.atlas.finding import PROGRAM, Finding, Row
 
 WEIGHT, INERTIA = 9.81, 4.0 / 3.0       # of a uniform rod of 1 kg and 2 m, about its end

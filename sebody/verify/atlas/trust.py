@@ -12,8 +12,9 @@ from sebody.explore.advice.steady import steady_frequencies
 from sebody.fem import Section
 from sebody.model.histories import time_function
 from sebody.model.model import Model
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
 from sebody.runs.statics import equilibrium
+from sebody.runs.whole_runs import simulate
 from sebody.small_motion.linearization import modes, vibrations
 from sebody.verify.atlas.finding import PROGRAM, REFERENCE, Finding, Row
 from sebody.verify.atlas.spin import LAG

@@ -8,8 +8,9 @@ from scipy.special import ellipj, ellipk
 
 from sebody.results.result import Result
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import Simulation, simulate
+from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
+from sebody.runs.whole_runs import simulate
 from sebody.verify.atlas.steps import INERTIA, WEIGHT, pendulum
 from sebody.verify.bench.measurement import Measurement
 

@@ -27,8 +27,9 @@ from sebody.model.model import Model
 from sebody.results.result import Result
 from sebody.runs.first_run import prepare
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import Simulation, planned_simulation
+from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance
+from sebody.runs.whole_runs import planned_simulation
 from sebody.verify.bench import peer
 from sebody.verify.chart.advised import FAMILY, Advised, advised
 from sebody.verify.chart.cases import STEPS, TOLERANCE, schemes

@@ -14,7 +14,7 @@ from sebody.basics.files.members import Member, Table
 from sebody.basics.warned import warn
 from sebody.kernels.loader import user_directory
 from sebody.runs.schemes import generalized_alpha
-from sebody.runs.simulation import simulate
+from sebody.runs.whole_runs import simulate
 from sebody.verify.chart.cases import COARSEST, SCENES, builder
 
 ELEMENTS = 24       # of the first run; the second has twice as many

@@ -1,0 +1,109 @@
+"""The models of the phases of a run: what lets go is left out, what locks keeps its pose."""
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sebody.contract.layout import RECORD
+from sebody.model.model import Model
+from sebody.model.numbering import record_counts, stretch
+from sebody.model.parts import Element, Joint, Node
+from sebody.model.time_functions import TimeFunction
+from sebody.results.recording import Recording
+
+
+def switch_times(model: Model, t_end: float) -> list[float]:
+    """Times before the end at which something lets go or locks, ascending."""
+    return sorted({t for switch in model.switches.values() for t in switch.times if t < t_end})
+
+
+def acting(model: Model, t: float) -> set[str]:
+    """Names of the parts with times that act from a time on."""
+    return {name for name, switch in model.switches.items() if switch.acts(t)}
+
+
+def phase_of(model: Model, acts: set[str], locked: Mapping[str, Joint]) -> Model:
+    """The model with the parts that act; it shares all of them with the model.
+
+    Friction in a joint that has let go is left out with it.
+
+    Parameters
+    ----------
+    acts : set of str
+        Those that act of the parts with times.
+    locked : mapping of str to Joint
+        Joints with the pose that they lock, in place of those of the model.
+    """
+    phase = copy(model)
+    phase.is_phase = True
+    gone = model.switches.keys() - acts
+    phase.joints = [locked.get(one.name, one) for one in model.joints if one.name not in gone]
+    joints = {one.name: one for one in phase.joints}
+    phase.loads = [_pressed(one, joints) for one in model.loads if one.name not in gone and (
+        one.pressed_by is None or one.pressed_by.name not in gone)]
+    return phase
+
+
+def whole(model: Model) -> Model:
+    """The model with all of its parts, as if they acted all the time."""
+    return phase_of(model, set(model.switches), {})
+
+
+def locked_as_now(joint: Joint, now: Recording) -> Joint:
+    """A weld or distance that keeps the pose its nodes have in a state; others as they are.
+
+    A weld keeps the place of `node` in axes of `to` and ``C = R^T R'``, the rotation of `to` in
+    axes of `node`: a direction ``C n`` of `node` stays where the direction n of `to` is.
+    """
+    if joint.kind not in ("weld", "distance"):
+        return joint
+    return replace(joint, constraints=tuple(_as_now(one, now) for one in joint.constraints))
+
+
+def _as_now(one: Element, now: Recording) -> Element:
+    kind = one.kind.removeprefix("planar_")
+    places = [_place(node, now) for node in dict.fromkeys(at.node for at in one.attachments)]
+    (x, R), (y, S) = places
+    if kind == "distance":
+        return replace(one, constants={**one.constants, "length": float(np.linalg.norm(y - x))})
+    if kind == "slide_drive":
+        start = float(one.vector("e") @ R.T @ (y - x))
+        return replace(one, constants={**one.constants, "start": start})
+    if kind == "turn_drive":
+        angle = _angle(one.attachments[0].node, now) - _angle(one.attachments[1].node, now)
+        return replace(one, time_function=TimeFunction((0.0,), ((angle,),)))
+    turned = {name: R.T @ S @ one.vector(name) for name in one.constants if name != "e" or
+              kind not in ("parallel", "perpendicular")}
+    return replace(one, constants={**one.constants, **turned})
+
+
+def _place(node: Node, now: Recording) -> tuple[NDArray, NDArray]:
+    """Position and rotation matrix of a node in a state."""
+    row, numbering = now.rows[-1], now.numbering
+    parts = RECORD.slices(record_counts(numbering))
+    x = node.point
+    if node.position is not None and node.position in numbering.dof_blocks:
+        x = row[parts["q"]][stretch(numbering, node.position)]
+    if node.rotation in numbering.rotations:
+        k = numbering.rotations[node.rotation]
+        return x, row[parts["R"]][9 * k:9 * k + 9].reshape(3, 3)
+    angle = _angle(node, now) if now.model.planar else 0.0
+    c, s = np.cos(angle), np.sin(angle)
+    return x, np.array([[c, -s], [s, c]]) if now.model.planar else np.eye(3)
+
+
+def _angle(node: Node, now: Recording) -> float:
+    """Angle of a node of a planar model in a state."""
+    if node.rotation is None or node.rotation not in now.numbering.dof_blocks:
+        return 0.0
+    q = now.recorded("q")[-1]
+    return float(q[stretch(now.numbering, node.rotation)][0])
+
+
+def _pressed(load: Element, joints: Mapping[str, Joint]) -> Element:
+    """A load, with the joint of the phase where one presses it."""
+    joint = load.pressed_by and joints[load.pressed_by.name]
+    return load if joint is load.pressed_by else replace(load, pressed_by=joint)
