@@ -5,6 +5,7 @@ from functools import partial
 from sebody.derive.formulas import (
     actuators,
     contacts,
+    couplings,
     forces,
     frictions,
     joints,
@@ -30,6 +31,9 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "planar_turn_drive": lambda: joints.turn_drive(True),
     "slide_drive": lambda: joints.slide_drive(False),
     "planar_slide_drive": lambda: joints.slide_drive(True),
+    **{"planar_" * planar + f"couple_{first}_{second}": partial(
+        couplings.couple, first, second, planar)
+       for first, second in couplings.PAIRS for planar in (False, True)},
     "rigid_body": lambda: rigid.rigid_body(False),
     "planar_rigid_body": lambda: rigid.rigid_body(True),
     "point_mass": lambda: rigid.point_mass(False),

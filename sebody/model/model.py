@@ -15,6 +15,7 @@ from sebody.model import (
     bodies,
     contacts,
     controllers,
+    couplings,
     drives,
     foundations,
     frictions,
@@ -137,6 +138,9 @@ class Model(Mechanism):
     friction = frictions.friction
     stop = contacts.stop
     gear = gears.gear
+    couple = couplings.couple
+    screw = couplings.screw
+    rack = couplings.rack
     contact = contacts.contact
 
 
