@@ -25,10 +25,9 @@ N_POSITIONS = 4
 N_ROTATIONS = 2
 ROTATIONS = 12      # first rotation among the local coordinates
 CONSTANTS = (
-    Part("f1", (), "factor of the way 1"),
+    Part("ratio", (), "first coordinate over the second"),
     Part("e1", (3,), "axis of the way, in axes of its first body"),
     Part("start1", (), "way at the start [length]"),
-    Part("f2", (), "factor of the way 2"),
     Part("e2", (3,), "axis of the way, in axes of its first body"),
     Part("start2", (), "way at the start [length]"),
 )
@@ -42,8 +41,8 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (161, 0, 0, 0),
-              "column": (353, 0, 0, 0)}
+OPERATIONS = {"residual": (162, 0, 0, 0),
+              "column": (354, 0, 0, 0)}
 
 
 @kernel_function
@@ -55,16 +54,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         unknowns = at(nodes, N_ROTATIONS)
         constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
-        f1 = constant[0]
+        ratio = constant[0]
         e1_x = constant[1]
         e1_y = constant[2]
         e1_z = constant[3]
         start1 = constant[4]
-        f2 = constant[5]
-        e2_x = constant[6]
-        e2_y = constant[7]
-        e2_z = constant[8]
-        start2 = constant[9]
+        e2_x = constant[5]
+        e2_y = constant[6]
+        e2_z = constant[7]
+        start2 = constant[8]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         xa_z = q[unknowns[2]]
@@ -133,60 +131,59 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ac_z = a[unknowns[17]]
         lam_1 = q[unknowns[18]]
         t0 = Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z
-        t1 = f1*lam_1
-        t2 = Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z
-        t3 = Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z
-        t4 = Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z
-        t5 = f2*lam_1
-        t6 = Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z
-        t7 = Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z
-        t8 = -xa_x + xb_x
-        t9 = -xa_y + xb_y
-        t10 = -xa_z + xb_z
-        t11 = -xc_x + xd_x
-        t12 = -xc_y + xd_y
-        t13 = -xc_z + xd_z
-        g[0] = -t0*t1
-        g[1] = -t1*t2
-        g[2] = -t1*t3
-        g[3] = t0*t1
-        g[4] = t1*t2
-        g[5] = t1*t3
-        g[6] = -t4*t5
-        g[7] = -t5*t6
-        g[8] = -t5*t7
-        g[9] = t4*t5
-        g[10] = t5*t6
-        g[11] = t5*t7
-        g[12] = (t1*(t10*(-Ra_zy*e1_z + Ra_zz*e1_y) + t8*(-Ra_xy*e1_z + Ra_xz*e1_y) +
-            t9*(-Ra_yy*e1_z + Ra_yz*e1_y)))
-        g[13] = (t1*(t10*(Ra_zx*e1_z - Ra_zz*e1_x) + t8*(Ra_xx*e1_z - Ra_xz*e1_x) + t9*(Ra_yx*e1_z
-            - Ra_yz*e1_x)))
-        g[14] = (t1*(t10*(-Ra_zx*e1_y + Ra_zy*e1_x) + t8*(-Ra_xx*e1_y + Ra_xy*e1_x) +
-            t9*(-Ra_yx*e1_y + Ra_yy*e1_x)))
-        g[15] = (t5*(t11*(-Rc_xy*e2_z + Rc_xz*e2_y) + t12*(-Rc_yy*e2_z + Rc_yz*e2_y) +
-            t13*(-Rc_zy*e2_z + Rc_zz*e2_y)))
-        g[16] = (t5*(t11*(Rc_xx*e2_z - Rc_xz*e2_x) + t12*(Rc_yx*e2_z - Rc_yz*e2_x) +
-            t13*(Rc_zx*e2_z - Rc_zz*e2_x)))
-        g[17] = (t5*(t11*(-Rc_xx*e2_y + Rc_xy*e2_x) + t12*(-Rc_yx*e2_y + Rc_yy*e2_x) +
-            t13*(-Rc_zx*e2_y + Rc_zy*e2_x)))
-        g[18] = f1*(-start1 + t0*t8 + t10*t3 + t2*t9) + f2*(-start2 + t11*t4 + t12*t6 + t13*t7)
+        t1 = Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z
+        t2 = Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z
+        t3 = Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z
+        t4 = lam_1*ratio
+        t5 = Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z
+        t6 = Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z
+        t7 = -xa_x + xb_x
+        t8 = -xa_y + xb_y
+        t9 = -xa_z + xb_z
+        t10 = -xc_x + xd_x
+        t11 = -xc_y + xd_y
+        t12 = -xc_z + xd_z
+        g[0] = -lam_1*t0
+        g[1] = -lam_1*t1
+        g[2] = -lam_1*t2
+        g[3] = lam_1*t0
+        g[4] = lam_1*t1
+        g[5] = lam_1*t2
+        g[6] = t3*t4
+        g[7] = t4*t5
+        g[8] = t4*t6
+        g[9] = -t3*t4
+        g[10] = -t4*t5
+        g[11] = -t4*t6
+        g[12] = (lam_1*(t7*(-Ra_xy*e1_z + Ra_xz*e1_y) + t8*(-Ra_yy*e1_z + Ra_yz*e1_y) +
+            t9*(-Ra_zy*e1_z + Ra_zz*e1_y)))
+        g[13] = (lam_1*(t7*(Ra_xx*e1_z - Ra_xz*e1_x) + t8*(Ra_yx*e1_z - Ra_yz*e1_x) +
+            t9*(Ra_zx*e1_z - Ra_zz*e1_x)))
+        g[14] = (lam_1*(t7*(-Ra_xx*e1_y + Ra_xy*e1_x) + t8*(-Ra_yx*e1_y + Ra_yy*e1_x) +
+            t9*(-Ra_zx*e1_y + Ra_zy*e1_x)))
+        g[15] = (-t4*(t10*(-Rc_xy*e2_z + Rc_xz*e2_y) + t11*(-Rc_yy*e2_z + Rc_yz*e2_y) +
+            t12*(-Rc_zy*e2_z + Rc_zz*e2_y)))
+        g[16] = (-t4*(t10*(Rc_xx*e2_z - Rc_xz*e2_x) + t11*(Rc_yx*e2_z - Rc_yz*e2_x) +
+            t12*(Rc_zx*e2_z - Rc_zz*e2_x)))
+        g[17] = (-t4*(t10*(-Rc_xx*e2_y + Rc_xy*e2_x) + t11*(-Rc_yx*e2_y + Rc_yy*e2_x) +
+            t12*(-Rc_zx*e2_y + Rc_zy*e2_x)))
+        g[18] = -ratio*(-start2 + t10*t3 + t11*t5 + t12*t6) - start1 + t0*t7 + t1*t8 + t2*t9
         if task == VELOCITY:
-            g[18] = (f1*((-va_x + vb_x)*(Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z) + (-va_y +
+            g[18] = (-ratio*((-vc_x + vd_x)*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) + (-vc_y +
+                vd_y)*(Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z) + (-vc_z + vd_z)*(Rc_zx*e2_x +
+                Rc_zy*e2_y + Rc_zz*e2_z) + (-xc_x + xd_x)*(e2_x*(-Omc_y*Rc_xz + Omc_z*Rc_xy) +
+                e2_y*(Omc_x*Rc_xz - Omc_z*Rc_xx) + e2_z*(-Omc_x*Rc_xy + Omc_y*Rc_xx)) + (-xc_y +
+                xd_y)*(e2_x*(-Omc_y*Rc_yz + Omc_z*Rc_yy) + e2_y*(Omc_x*Rc_yz - Omc_z*Rc_yx) +
+                e2_z*(-Omc_x*Rc_yy + Omc_y*Rc_yx)) + (-xc_z + xd_z)*(e2_x*(-Omc_y*Rc_zz +
+                Omc_z*Rc_zy) + e2_y*(Omc_x*Rc_zz - Omc_z*Rc_zx) + e2_z*(-Omc_x*Rc_zy +
+                Omc_y*Rc_zx))) + (-va_x + vb_x)*(Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z) + (-va_y +
                 vb_y)*(Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z) + (-va_z + vb_z)*(Ra_zx*e1_x +
                 Ra_zy*e1_y + Ra_zz*e1_z) + (-xa_x + xb_x)*(e1_x*(-Oma_y*Ra_xz + Oma_z*Ra_xy) +
                 e1_y*(Oma_x*Ra_xz - Oma_z*Ra_xx) + e1_z*(-Oma_x*Ra_xy + Oma_y*Ra_xx)) + (-xa_y +
                 xb_y)*(e1_x*(-Oma_y*Ra_yz + Oma_z*Ra_yy) + e1_y*(Oma_x*Ra_yz - Oma_z*Ra_yx) +
                 e1_z*(-Oma_x*Ra_yy + Oma_y*Ra_yx)) + (-xa_z + xb_z)*(e1_x*(-Oma_y*Ra_zz +
                 Oma_z*Ra_zy) + e1_y*(Oma_x*Ra_zz - Oma_z*Ra_zx) + e1_z*(-Oma_x*Ra_zy +
-                Oma_y*Ra_zx))) + f2*((-vc_x + vd_x)*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) +
-                (-vc_y + vd_y)*(Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z) + (-vc_z + vd_z)*(Rc_zx*e2_x
-                + Rc_zy*e2_y + Rc_zz*e2_z) + (-xc_x + xd_x)*(e2_x*(-Omc_y*Rc_xz + Omc_z*Rc_xy) +
-                e2_y*(Omc_x*Rc_xz - Omc_z*Rc_xx) + e2_z*(-Omc_x*Rc_xy + Omc_y*Rc_xx)) + (-xc_y +
-                xd_y)*(e2_x*(-Omc_y*Rc_yz + Omc_z*Rc_yy) + e2_y*(Omc_x*Rc_yz - Omc_z*Rc_yx) +
-                e2_z*(-Omc_x*Rc_yy + Omc_y*Rc_yx)) + (-xc_z + xd_z)*(e2_x*(-Omc_y*Rc_zz +
-                Omc_z*Rc_zy) + e2_y*(Omc_x*Rc_zz - Omc_z*Rc_zx) + e2_z*(-Omc_x*Rc_zy +
-                Omc_y*Rc_zx))))
+                Oma_y*Ra_zx)))
         if task == ACCELERATION:
             t900 = -Oma_y*Ra_xz + Oma_z*Ra_xy
             t901 = Oma_x*Ra_xz - Oma_z*Ra_xx
@@ -206,19 +203,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t915 = -Omc_y*Rc_zz + Omc_z*Rc_zy
             t916 = Omc_x*Rc_zz - Omc_z*Rc_zx
             t917 = -Omc_x*Rc_zy + Omc_y*Rc_zx
-            g[18] = (f1*((-aa_x + ab_x)*(Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z) + (-aa_y +
-                ab_y)*(Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z) + (-aa_z + ab_z)*(Ra_zx*e1_x +
-                Ra_zy*e1_y + Ra_zz*e1_z) + 2*(-va_x + vb_x)*(e1_x*t900 + e1_y*t901 + e1_z*t902) +
-                2*(-va_y + vb_y)*(e1_x*t903 + e1_y*t904 + e1_z*t905) + 2*(-va_z + vb_z)*(e1_x*t906
-                + e1_y*t907 + e1_z*t908) + (-xa_x + xb_x)*(e1_x*(-Aa_y*Ra_xz + Aa_z*Ra_xy -
-                Oma_y*t902 + Oma_z*t901) + e1_y*(Aa_x*Ra_xz - Aa_z*Ra_xx + Oma_x*t902 -
-                Oma_z*t900) + e1_z*(-Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t901 + Oma_y*t900)) + (-xa_y
-                + xb_y)*(e1_x*(-Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t905 + Oma_z*t904) +
-                e1_y*(Aa_x*Ra_yz - Aa_z*Ra_yx + Oma_x*t905 - Oma_z*t903) + e1_z*(-Aa_x*Ra_yy +
-                Aa_y*Ra_yx - Oma_x*t904 + Oma_y*t903)) + (-xa_z + xb_z)*(e1_x*(-Aa_y*Ra_zz +
-                Aa_z*Ra_zy - Oma_y*t908 + Oma_z*t907) + e1_y*(Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t908
-                - Oma_z*t906) + e1_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t907 + Oma_y*t906))) +
-                f2*((-ac_x + ad_x)*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) + (-ac_y +
+            g[18] = (-ratio*((-ac_x + ad_x)*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) + (-ac_y +
                 ad_y)*(Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z) + (-ac_z + ad_z)*(Rc_zx*e2_x +
                 Rc_zy*e2_y + Rc_zz*e2_z) + 2*(-vc_x + vd_x)*(e2_x*t909 + e2_y*t910 + e2_z*t911) +
                 2*(-vc_y + vd_y)*(e2_x*t912 + e2_y*t913 + e2_z*t914) + 2*(-vc_z + vd_z)*(e2_x*t915
@@ -229,7 +214,19 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 e2_y*(Ac_x*Rc_yz - Ac_z*Rc_yx + Omc_x*t914 - Omc_z*t912) + e2_z*(-Ac_x*Rc_yy +
                 Ac_y*Rc_yx - Omc_x*t913 + Omc_y*t912)) + (-xc_z + xd_z)*(e2_x*(-Ac_y*Rc_zz +
                 Ac_z*Rc_zy - Omc_y*t917 + Omc_z*t916) + e2_y*(Ac_x*Rc_zz - Ac_z*Rc_zx + Omc_x*t917
-                - Omc_z*t915) + e2_z*(-Ac_x*Rc_zy + Ac_y*Rc_zx - Omc_x*t916 + Omc_y*t915))))
+                - Omc_z*t915) + e2_z*(-Ac_x*Rc_zy + Ac_y*Rc_zx - Omc_x*t916 + Omc_y*t915))) +
+                (-aa_x + ab_x)*(Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z) + (-aa_y + ab_y)*(Ra_yx*e1_x
+                + Ra_yy*e1_y + Ra_yz*e1_z) + (-aa_z + ab_z)*(Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z)
+                + 2*(-va_x + vb_x)*(e1_x*t900 + e1_y*t901 + e1_z*t902) + 2*(-va_y +
+                vb_y)*(e1_x*t903 + e1_y*t904 + e1_z*t905) + 2*(-va_z + vb_z)*(e1_x*t906 +
+                e1_y*t907 + e1_z*t908) + (-xa_x + xb_x)*(e1_x*(-Aa_y*Ra_xz + Aa_z*Ra_xy -
+                Oma_y*t902 + Oma_z*t901) + e1_y*(Aa_x*Ra_xz - Aa_z*Ra_xx + Oma_x*t902 -
+                Oma_z*t900) + e1_z*(-Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t901 + Oma_y*t900)) + (-xa_y
+                + xb_y)*(e1_x*(-Aa_y*Ra_yz + Aa_z*Ra_yy - Oma_y*t905 + Oma_z*t904) +
+                e1_y*(Aa_x*Ra_yz - Aa_z*Ra_yx + Oma_x*t905 - Oma_z*t903) + e1_z*(-Aa_x*Ra_yy +
+                Aa_y*Ra_yx - Oma_x*t904 + Oma_y*t903)) + (-xa_z + xb_z)*(e1_x*(-Aa_y*Ra_zz +
+                Aa_z*Ra_zy - Oma_y*t908 + Oma_z*t907) + e1_y*(Aa_x*Ra_zz - Aa_z*Ra_zx + Oma_x*t908
+                - Oma_z*t906) + e1_z*(-Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t907 + Oma_y*t906)))
         if task == TANGENT:
             c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
@@ -262,117 +259,115 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dthc_x = dq[15]
                 dthc_y = dq[16]
                 dthc_z = dq[17]
-                t14 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t15 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t16 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t17 = e1_x*t14 + e1_y*t15 + e1_z*t16
-                t18 = c_stiffness*lam_1
-                t19 = f1*t18
-                t20 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t21 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t22 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t23 = e1_x*t20 + e1_y*t21 + e1_z*t22
-                t24 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t25 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t26 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t27 = e1_x*t24 + e1_y*t25 + e1_z*t26
-                t28 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t29 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t30 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t31 = e2_x*t28 + e2_y*t29 + e2_z*t30
-                t32 = f2*t18
-                t33 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t34 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t35 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t36 = e2_x*t33 + e2_y*t34 + e2_z*t35
-                t37 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t38 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t39 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t40 = e2_x*t37 + e2_y*t38 + e2_z*t39
-                t41 = -dxa_x + dxb_x
-                t42 = -dxa_y + dxb_y
-                t43 = -dxa_z + dxb_z
-                t44 = -xa_x + xb_x
-                t45 = -xa_y + xb_y
-                t46 = -xa_z + xb_z
-                t47 = -dxc_x + dxd_x
-                t48 = -dxc_y + dxd_y
-                t49 = -dxc_z + dxd_z
-                t50 = -xc_x + xd_x
-                t51 = -xc_y + xd_y
-                t52 = -xc_z + xd_z
-                J[column] = -t17*t19
-                J[19 + column] = -t19*t23
-                J[38 + column] = -t19*t27
-                J[57 + column] = t17*t19
-                J[76 + column] = t19*t23
-                J[95 + column] = t19*t27
-                J[114 + column] = -t31*t32
-                J[133 + column] = -t32*t36
-                J[152 + column] = -t32*t40
-                J[171 + column] = t31*t32
-                J[190 + column] = t32*t36
-                J[209 + column] = t32*t40
-                J[228 + column] = (t19*(t41*(-Ra_xy*e1_z + Ra_xz*e1_y) + t42*(-Ra_yy*e1_z +
-                    Ra_yz*e1_y) + t43*(-Ra_zy*e1_z + Ra_zz*e1_y) + t44*(e1_y*t16 - e1_z*t15) +
-                    t45*(e1_y*t22 - e1_z*t21) + t46*(e1_y*t26 - e1_z*t25)))
-                J[247 + column] = (t19*(t41*(Ra_xx*e1_z - Ra_xz*e1_x) + t42*(Ra_yx*e1_z -
-                    Ra_yz*e1_x) + t43*(Ra_zx*e1_z - Ra_zz*e1_x) + t44*(-e1_x*t16 + e1_z*t14) +
-                    t45*(-e1_x*t22 + e1_z*t20) + t46*(-e1_x*t26 + e1_z*t24)))
-                J[266 + column] = (t19*(t41*(-Ra_xx*e1_y + Ra_xy*e1_x) + t42*(-Ra_yx*e1_y +
-                    Ra_yy*e1_x) + t43*(-Ra_zx*e1_y + Ra_zy*e1_x) + t44*(e1_x*t15 - e1_y*t14) +
-                    t45*(e1_x*t21 - e1_y*t20) + t46*(e1_x*t25 - e1_y*t24)))
-                J[285 + column] = (t32*(t47*(-Rc_xy*e2_z + Rc_xz*e2_y) + t48*(-Rc_yy*e2_z +
-                    Rc_yz*e2_y) + t49*(-Rc_zy*e2_z + Rc_zz*e2_y) + t50*(e2_y*t30 - e2_z*t29) +
-                    t51*(e2_y*t35 - e2_z*t34) + t52*(e2_y*t39 - e2_z*t38)))
-                J[304 + column] = (t32*(t47*(Rc_xx*e2_z - Rc_xz*e2_x) + t48*(Rc_yx*e2_z -
-                    Rc_yz*e2_x) + t49*(Rc_zx*e2_z - Rc_zz*e2_x) + t50*(-e2_x*t30 + e2_z*t28) +
-                    t51*(-e2_x*t35 + e2_z*t33) + t52*(-e2_x*t39 + e2_z*t37)))
-                J[323 + column] = (t32*(t47*(-Rc_xx*e2_y + Rc_xy*e2_x) + t48*(-Rc_yx*e2_y +
-                    Rc_yy*e2_x) + t49*(-Rc_zx*e2_y + Rc_zy*e2_x) + t50*(e2_x*t29 - e2_y*t28) +
-                    t51*(e2_x*t34 - e2_y*t33) + t52*(e2_x*t38 - e2_y*t37)))
-                J[342 + column] = (c_constraint*(f1*(t17*t44 + t23*t45 + t27*t46 + t41*(Ra_xx*e1_x
-                    + Ra_xy*e1_y + Ra_xz*e1_z) + t42*(Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z) +
-                    t43*(Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z)) + f2*(t31*t50 + t36*t51 + t40*t52
-                    + t47*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) + t48*(Rc_yx*e2_x + Rc_yy*e2_y +
-                    Rc_yz*e2_z) + t49*(Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z))))
+                t13 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t14 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t15 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t16 = e1_x*t13 + e1_y*t14 + e1_z*t15
+                t17 = c_stiffness*lam_1
+                t18 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t19 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t20 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t21 = e1_x*t18 + e1_y*t19 + e1_z*t20
+                t22 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t23 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t24 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t25 = e1_x*t22 + e1_y*t23 + e1_z*t24
+                t26 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t27 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t28 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t29 = e2_x*t26 + e2_y*t27 + e2_z*t28
+                t30 = ratio*t17
+                t31 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t32 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t33 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t34 = e2_x*t31 + e2_y*t32 + e2_z*t33
+                t35 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t36 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t37 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t38 = e2_x*t35 + e2_y*t36 + e2_z*t37
+                t39 = -dxa_x + dxb_x
+                t40 = -dxa_y + dxb_y
+                t41 = -dxa_z + dxb_z
+                t42 = -xa_x + xb_x
+                t43 = -xa_y + xb_y
+                t44 = -xa_z + xb_z
+                t45 = -dxc_x + dxd_x
+                t46 = -dxc_y + dxd_y
+                t47 = -dxc_z + dxd_z
+                t48 = -xc_x + xd_x
+                t49 = -xc_y + xd_y
+                t50 = -xc_z + xd_z
+                J[column] = -t16*t17
+                J[19 + column] = -t17*t21
+                J[38 + column] = -t17*t25
+                J[57 + column] = t16*t17
+                J[76 + column] = t17*t21
+                J[95 + column] = t17*t25
+                J[114 + column] = t29*t30
+                J[133 + column] = t30*t34
+                J[152 + column] = t30*t38
+                J[171 + column] = -t29*t30
+                J[190 + column] = -t30*t34
+                J[209 + column] = -t30*t38
+                J[228 + column] = (t17*(t39*(-Ra_xy*e1_z + Ra_xz*e1_y) + t40*(-Ra_yy*e1_z +
+                    Ra_yz*e1_y) + t41*(-Ra_zy*e1_z + Ra_zz*e1_y) + t42*(e1_y*t15 - e1_z*t14) +
+                    t43*(e1_y*t20 - e1_z*t19) + t44*(e1_y*t24 - e1_z*t23)))
+                J[247 + column] = (t17*(t39*(Ra_xx*e1_z - Ra_xz*e1_x) + t40*(Ra_yx*e1_z -
+                    Ra_yz*e1_x) + t41*(Ra_zx*e1_z - Ra_zz*e1_x) + t42*(-e1_x*t15 + e1_z*t13) +
+                    t43*(-e1_x*t20 + e1_z*t18) + t44*(-e1_x*t24 + e1_z*t22)))
+                J[266 + column] = (t17*(t39*(-Ra_xx*e1_y + Ra_xy*e1_x) + t40*(-Ra_yx*e1_y +
+                    Ra_yy*e1_x) + t41*(-Ra_zx*e1_y + Ra_zy*e1_x) + t42*(e1_x*t14 - e1_y*t13) +
+                    t43*(e1_x*t19 - e1_y*t18) + t44*(e1_x*t23 - e1_y*t22)))
+                J[285 + column] = (-t30*(t45*(-Rc_xy*e2_z + Rc_xz*e2_y) + t46*(-Rc_yy*e2_z +
+                    Rc_yz*e2_y) + t47*(-Rc_zy*e2_z + Rc_zz*e2_y) + t48*(e2_y*t28 - e2_z*t27) +
+                    t49*(e2_y*t33 - e2_z*t32) + t50*(e2_y*t37 - e2_z*t36)))
+                J[304 + column] = (-t30*(t45*(Rc_xx*e2_z - Rc_xz*e2_x) + t46*(Rc_yx*e2_z -
+                    Rc_yz*e2_x) + t47*(Rc_zx*e2_z - Rc_zz*e2_x) + t48*(-e2_x*t28 + e2_z*t26) +
+                    t49*(-e2_x*t33 + e2_z*t31) + t50*(-e2_x*t37 + e2_z*t35)))
+                J[323 + column] = (-t30*(t45*(-Rc_xx*e2_y + Rc_xy*e2_x) + t46*(-Rc_yx*e2_y +
+                    Rc_yy*e2_x) + t47*(-Rc_zx*e2_y + Rc_zy*e2_x) + t48*(e2_x*t27 - e2_y*t26) +
+                    t49*(e2_x*t32 - e2_y*t31) + t50*(e2_x*t36 - e2_y*t35)))
+                J[342 + column] = (c_constraint*(-ratio*(t29*t48 + t34*t49 + t38*t50 +
+                    t45*(Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z) + t46*(Rc_yx*e2_x + Rc_yy*e2_y +
+                    Rc_yz*e2_z) + t47*(Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z)) + t16*t42 + t21*t43
+                    + t25*t44 + t39*(Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z) + t40*(Ra_yx*e1_x +
+                    Ra_yy*e1_y + Ra_yz*e1_z) + t41*(Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z)))
             t700 = Ra_xx*e1_x + Ra_xy*e1_y + Ra_xz*e1_z
-            t701 = c_constraint*f1
-            t702 = Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z
-            t703 = Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z
-            t704 = Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z
-            t705 = c_constraint*f2
-            t706 = Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z
-            t707 = Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z
-            t708 = -xa_x + xb_x
-            t709 = -xa_y + xb_y
-            t710 = -xa_z + xb_z
-            t711 = -xc_x + xd_x
-            t712 = -xc_y + xd_y
-            t713 = -xc_z + xd_z
-            J[18] = -t700*t701
-            J[37] = -t701*t702
-            J[56] = -t701*t703
-            J[75] = t700*t701
-            J[94] = t701*t702
-            J[113] = t701*t703
-            J[132] = -t704*t705
-            J[151] = -t705*t706
-            J[170] = -t705*t707
-            J[189] = t704*t705
-            J[208] = t705*t706
-            J[227] = t705*t707
-            J[246] = (t701*(t708*(-Ra_xy*e1_z + Ra_xz*e1_y) + t709*(-Ra_yy*e1_z + Ra_yz*e1_y) +
-                t710*(-Ra_zy*e1_z + Ra_zz*e1_y)))
-            J[265] = (t701*(t708*(Ra_xx*e1_z - Ra_xz*e1_x) + t709*(Ra_yx*e1_z - Ra_yz*e1_x) +
-                t710*(Ra_zx*e1_z - Ra_zz*e1_x)))
-            J[284] = (t701*(t708*(-Ra_xx*e1_y + Ra_xy*e1_x) + t709*(-Ra_yx*e1_y + Ra_yy*e1_x) +
-                t710*(-Ra_zx*e1_y + Ra_zy*e1_x)))
-            J[303] = (t705*(t711*(-Rc_xy*e2_z + Rc_xz*e2_y) + t712*(-Rc_yy*e2_z + Rc_yz*e2_y) +
-                t713*(-Rc_zy*e2_z + Rc_zz*e2_y)))
-            J[322] = (t705*(t711*(Rc_xx*e2_z - Rc_xz*e2_x) + t712*(Rc_yx*e2_z - Rc_yz*e2_x) +
-                t713*(Rc_zx*e2_z - Rc_zz*e2_x)))
-            J[341] = (t705*(t711*(-Rc_xx*e2_y + Rc_xy*e2_x) + t712*(-Rc_yx*e2_y + Rc_yy*e2_x) +
-                t713*(-Rc_zx*e2_y + Rc_zy*e2_x)))
+            t701 = Ra_yx*e1_x + Ra_yy*e1_y + Ra_yz*e1_z
+            t702 = Ra_zx*e1_x + Ra_zy*e1_y + Ra_zz*e1_z
+            t703 = Rc_xx*e2_x + Rc_xy*e2_y + Rc_xz*e2_z
+            t704 = c_constraint*ratio
+            t705 = Rc_yx*e2_x + Rc_yy*e2_y + Rc_yz*e2_z
+            t706 = Rc_zx*e2_x + Rc_zy*e2_y + Rc_zz*e2_z
+            t707 = -xa_x + xb_x
+            t708 = -xa_y + xb_y
+            t709 = -xa_z + xb_z
+            t710 = -xc_x + xd_x
+            t711 = -xc_y + xd_y
+            t712 = -xc_z + xd_z
+            J[18] = -c_constraint*t700
+            J[37] = -c_constraint*t701
+            J[56] = -c_constraint*t702
+            J[75] = c_constraint*t700
+            J[94] = c_constraint*t701
+            J[113] = c_constraint*t702
+            J[132] = t703*t704
+            J[151] = t704*t705
+            J[170] = t704*t706
+            J[189] = -t703*t704
+            J[208] = -t704*t705
+            J[227] = -t704*t706
+            J[246] = (c_constraint*(t707*(-Ra_xy*e1_z + Ra_xz*e1_y) + t708*(-Ra_yy*e1_z +
+                Ra_yz*e1_y) + t709*(-Ra_zy*e1_z + Ra_zz*e1_y)))
+            J[265] = (c_constraint*(t707*(Ra_xx*e1_z - Ra_xz*e1_x) + t708*(Ra_yx*e1_z -
+                Ra_yz*e1_x) + t709*(Ra_zx*e1_z - Ra_zz*e1_x)))
+            J[284] = (c_constraint*(t707*(-Ra_xx*e1_y + Ra_xy*e1_x) + t708*(-Ra_yx*e1_y +
+                Ra_yy*e1_x) + t709*(-Ra_zx*e1_y + Ra_zy*e1_x)))
+            J[303] = (-t704*(t710*(-Rc_xy*e2_z + Rc_xz*e2_y) + t711*(-Rc_yy*e2_z + Rc_yz*e2_y) +
+                t712*(-Rc_zy*e2_z + Rc_zz*e2_y)))
+            J[322] = (-t704*(t710*(Rc_xx*e2_z - Rc_xz*e2_x) + t711*(Rc_yx*e2_z - Rc_yz*e2_x) +
+                t712*(Rc_zx*e2_z - Rc_zz*e2_x)))
+            J[341] = (-t704*(t710*(-Rc_xx*e2_y + Rc_xy*e2_x) + t711*(-Rc_yx*e2_y + Rc_yy*e2_x) +
+                t712*(-Rc_zx*e2_y + Rc_zy*e2_x)))
             J[360] = 0.0
     return OK

@@ -28,12 +28,13 @@ N_POSITIONS = 0
 N_ROTATIONS = 4
 ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = (
-    Part("f1", (), "factor of the angle 1"),
-    Part("n1", (3,), "direction normal to the axis of the angle, body a"),
-    Part("m1", (3,), "direction normal to both, body b"),
-    Part("f2", (), "factor of the angle 2"),
-    Part("n2", (3,), "direction normal to the axis of the angle, body a"),
-    Part("m2", (3,), "direction normal to both, body b"),
+    Part("ratio", (), "first coordinate over the second"),
+    Part("d1", (3,), "direction normal to the axis, in axes of body a"),
+    Part("n1", (3,), "where it is at angle zero, in axes of body b"),
+    Part("m1", (3,), "and at a right angle, in axes of body b"),
+    Part("d2", (3,), "direction normal to the axis, in axes of body a"),
+    Part("n2", (3,), "where it is at angle zero, in axes of body b"),
+    Part("m2", (3,), "and at a right angle, in axes of body b"),
 )
 MULTIPLIERS = 1
 VECTOR = False        # the equations are components of one vector
@@ -45,8 +46,8 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (409, 0, 0, 0),
-              "column": (1105, 0, 0, 0)}
+OPERATIONS = {"residual": (413, 0, 0, 0),
+              "column": (1109, 0, 0, 0)}
 
 
 @kernel_function
@@ -58,20 +59,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         unknowns = at(nodes, N_ROTATIONS)
         constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
-        f1 = constant[0]
-        n1_x = constant[1]
-        n1_y = constant[2]
-        n1_z = constant[3]
-        m1_x = constant[4]
-        m1_y = constant[5]
-        m1_z = constant[6]
-        f2 = constant[7]
-        n2_x = constant[8]
-        n2_y = constant[9]
-        n2_z = constant[10]
-        m2_x = constant[11]
-        m2_y = constant[12]
-        m2_z = constant[13]
+        ratio = constant[0]
+        d1_x = constant[1]
+        d1_y = constant[2]
+        d1_z = constant[3]
+        n1_x = constant[4]
+        n1_y = constant[5]
+        n1_z = constant[6]
+        m1_x = constant[7]
+        m1_y = constant[8]
+        m1_z = constant[9]
+        d2_x = constant[10]
+        d2_y = constant[11]
+        d2_z = constant[12]
+        n2_x = constant[13]
+        n2_y = constant[14]
+        n2_z = constant[15]
+        m2_x = constant[16]
+        m2_y = constant[17]
+        m2_z = constant[18]
         Ra_xx = R[9*nodes[0]]
         Ra_xy = R[9*nodes[0] + 1]
         Ra_xz = R[9*nodes[0] + 2]
@@ -138,109 +144,108 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         t0 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
         t1 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
         t2 = -t1
-        t3 = n1_y*t0 + n1_z*t2
+        t3 = d1_y*t0 + d1_z*t2
         t4 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
         t5 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
         t6 = -t5
-        t7 = n1_y*t4 + n1_z*t6
+        t7 = d1_y*t4 + d1_z*t6
         t8 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
         t9 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
         t10 = -t9
-        t11 = n1_y*t8 + n1_z*t10
+        t11 = d1_y*t8 + d1_z*t10
         t12 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-        t13 = n1_x*t12 + n1_y*t1 + n1_z*t0
+        t13 = d1_x*t12 + d1_y*t1 + d1_z*t0
         t14 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-        t15 = n1_x*t14 + n1_y*t5 + n1_z*t4
+        t15 = d1_x*t14 + d1_y*t5 + d1_z*t4
         t16 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-        t17 = n1_x*t16 + n1_y*t9 + n1_z*t8
+        t17 = d1_x*t16 + d1_y*t9 + d1_z*t8
         t18 = m1_x*t13 + m1_y*t15 + m1_z*t17
         t19 = n1_x*t13 + n1_y*t15 + n1_z*t17
         t20 = 1/(t18*t18 + t19*t19)
         t21 = t19*t20
         t22 = -t18*t20
-        t23 = f1*lam_1
-        t24 = -t0
-        t25 = n1_x*t24 + n1_z*t12
-        t26 = -t4
-        t27 = n1_x*t26 + n1_z*t14
-        t28 = -t8
-        t29 = n1_x*t28 + n1_z*t16
-        t30 = -t12
-        t31 = n1_x*t1 + n1_y*t30
-        t32 = -t14
-        t33 = n1_x*t5 + n1_y*t32
-        t34 = -t16
-        t35 = n1_x*t9 + n1_y*t34
-        t36 = n1_x*t32 + n1_y*t6 + n1_z*t26
-        t37 = n1_x*t34 + n1_y*t10 + n1_z*t28
-        t38 = n1_x*t30 + n1_y*t2 + n1_z*t24
-        t39 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-        t40 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-        t41 = -t40
-        t42 = n2_y*t39 + n2_z*t41
-        t43 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-        t44 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-        t45 = -t44
-        t46 = n2_y*t43 + n2_z*t45
-        t47 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-        t48 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-        t49 = -t48
-        t50 = n2_y*t47 + n2_z*t49
-        t51 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-        t52 = n2_x*t51 + n2_y*t40 + n2_z*t39
-        t53 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-        t54 = n2_x*t53 + n2_y*t44 + n2_z*t43
-        t55 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-        t56 = n2_x*t55 + n2_y*t48 + n2_z*t47
-        t57 = m2_x*t52 + m2_y*t54 + m2_z*t56
-        t58 = n2_x*t52 + n2_y*t54 + n2_z*t56
-        t59 = 1/(t57*t57 + t58*t58)
-        t60 = t58*t59
-        t61 = -t57*t59
-        t62 = f2*lam_1
-        t63 = -t39
-        t64 = n2_x*t63 + n2_z*t51
-        t65 = -t43
-        t66 = n2_x*t65 + n2_z*t53
-        t67 = -t47
-        t68 = n2_x*t67 + n2_z*t55
-        t69 = -t51
-        t70 = n2_x*t40 + n2_y*t69
-        t71 = -t53
-        t72 = n2_x*t44 + n2_y*t71
-        t73 = -t55
-        t74 = n2_x*t48 + n2_y*t73
-        t75 = n2_x*t71 + n2_y*t45 + n2_z*t65
-        t76 = n2_x*t73 + n2_y*t49 + n2_z*t67
-        t77 = n2_x*t69 + n2_y*t41 + n2_z*t63
-        t78 = atan2(t18, t19)
-        t79 = (t78 + 6.283185307179586*floor(0.15915494309189535*kept_angle_1 -
-            0.15915494309189535*t78 + 0.5))
-        t80 = atan2(t57, t58)
-        t81 = (t80 + 6.283185307179586*floor(0.15915494309189535*kept_angle_2 -
-            0.15915494309189535*t80 + 0.5))
-        g[0] = t23*(t21*(m1_x*t3 + m1_y*t7 + m1_z*t11) + t22*(n1_x*t3 + n1_y*t7 + n1_z*t11))
-        g[1] = t23*(t21*(m1_x*t25 + m1_y*t27 + m1_z*t29) + t22*(n1_x*t25 + n1_y*t27 + n1_z*t29))
-        g[2] = t23*(t21*(m1_x*t31 + m1_y*t33 + m1_z*t35) + t22*(n1_x*t31 + n1_y*t33 + n1_z*t35))
-        g[3] = t23*(t21*(m1_y*t17 + m1_z*t36) + t22*(n1_y*t17 + n1_z*t36))
-        g[4] = t23*(t21*(m1_x*t37 + m1_z*t13) + t22*(n1_x*t37 + n1_z*t13))
-        g[5] = t23*(t21*(m1_x*t15 + m1_y*t38) + t22*(n1_x*t15 + n1_y*t38))
-        g[6] = t62*(t60*(m2_x*t42 + m2_y*t46 + m2_z*t50) + t61*(n2_x*t42 + n2_y*t46 + n2_z*t50))
-        g[7] = t62*(t60*(m2_x*t64 + m2_y*t66 + m2_z*t68) + t61*(n2_x*t64 + n2_y*t66 + n2_z*t68))
-        g[8] = t62*(t60*(m2_x*t70 + m2_y*t72 + m2_z*t74) + t61*(n2_x*t70 + n2_y*t72 + n2_z*t74))
-        g[9] = t62*(t60*(m2_y*t56 + m2_z*t75) + t61*(n2_y*t56 + n2_z*t75))
-        g[10] = t62*(t60*(m2_x*t76 + m2_z*t52) + t61*(n2_x*t76 + n2_z*t52))
-        g[11] = t62*(t60*(m2_x*t54 + m2_y*t77) + t61*(n2_x*t54 + n2_y*t77))
-        g[12] = f1*t79 + f2*t81
-        frames[index[first + AT_FRAME]] = t79
-        frames[index[first + AT_FRAME] + 1] = t81
+        t23 = -t0
+        t24 = d1_x*t23 + d1_z*t12
+        t25 = -t4
+        t26 = d1_x*t25 + d1_z*t14
+        t27 = -t8
+        t28 = d1_x*t27 + d1_z*t16
+        t29 = -t12
+        t30 = d1_x*t1 + d1_y*t29
+        t31 = -t14
+        t32 = d1_x*t5 + d1_y*t31
+        t33 = -t16
+        t34 = d1_x*t9 + d1_y*t33
+        t35 = d1_x*t31 + d1_y*t6 + d1_z*t25
+        t36 = d1_x*t33 + d1_y*t10 + d1_z*t27
+        t37 = d1_x*t29 + d1_y*t2 + d1_z*t23
+        t38 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+        t39 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+        t40 = -t39
+        t41 = d2_y*t38 + d2_z*t40
+        t42 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+        t43 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+        t44 = -t43
+        t45 = d2_y*t42 + d2_z*t44
+        t46 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+        t47 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+        t48 = -t47
+        t49 = d2_y*t46 + d2_z*t48
+        t50 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+        t51 = d2_x*t50 + d2_y*t39 + d2_z*t38
+        t52 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+        t53 = d2_x*t52 + d2_y*t43 + d2_z*t42
+        t54 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+        t55 = d2_x*t54 + d2_y*t47 + d2_z*t46
+        t56 = m2_x*t51 + m2_y*t53 + m2_z*t55
+        t57 = n2_x*t51 + n2_y*t53 + n2_z*t55
+        t58 = 1/(t56*t56 + t57*t57)
+        t59 = t57*t58
+        t60 = -t56*t58
+        t61 = lam_1*ratio
+        t62 = -t38
+        t63 = d2_x*t62 + d2_z*t50
+        t64 = -t42
+        t65 = d2_x*t64 + d2_z*t52
+        t66 = -t46
+        t67 = d2_x*t66 + d2_z*t54
+        t68 = -t50
+        t69 = d2_x*t39 + d2_y*t68
+        t70 = -t52
+        t71 = d2_x*t43 + d2_y*t70
+        t72 = -t54
+        t73 = d2_x*t47 + d2_y*t72
+        t74 = d2_x*t70 + d2_y*t44 + d2_z*t64
+        t75 = d2_x*t72 + d2_y*t48 + d2_z*t66
+        t76 = d2_x*t68 + d2_y*t40 + d2_z*t62
+        t77 = atan2(t56, t57)
+        t78 = (t77 + 6.283185307179586*floor(0.15915494309189535*kept_angle_2 -
+            0.15915494309189535*t77 + 0.5))
+        t79 = atan2(t18, t19)
+        t80 = (t79 + 6.283185307179586*floor(0.15915494309189535*kept_angle_1 -
+            0.15915494309189535*t79 + 0.5))
+        g[0] = lam_1*(t21*(m1_x*t3 + m1_y*t7 + m1_z*t11) + t22*(n1_x*t3 + n1_y*t7 + n1_z*t11))
+        g[1] = lam_1*(t21*(m1_x*t24 + m1_y*t26 + m1_z*t28) + t22*(n1_x*t24 + n1_y*t26 + n1_z*t28))
+        g[2] = lam_1*(t21*(m1_x*t30 + m1_y*t32 + m1_z*t34) + t22*(n1_x*t30 + n1_y*t32 + n1_z*t34))
+        g[3] = lam_1*(t21*(m1_y*t17 + m1_z*t35) + t22*(n1_y*t17 + n1_z*t35))
+        g[4] = lam_1*(t21*(m1_x*t36 + m1_z*t13) + t22*(n1_x*t36 + n1_z*t13))
+        g[5] = lam_1*(t21*(m1_x*t15 + m1_y*t37) + t22*(n1_x*t15 + n1_y*t37))
+        g[6] = -t61*(t59*(m2_x*t41 + m2_y*t45 + m2_z*t49) + t60*(n2_x*t41 + n2_y*t45 + n2_z*t49))
+        g[7] = -t61*(t59*(m2_x*t63 + m2_y*t65 + m2_z*t67) + t60*(n2_x*t63 + n2_y*t65 + n2_z*t67))
+        g[8] = -t61*(t59*(m2_x*t69 + m2_y*t71 + m2_z*t73) + t60*(n2_x*t69 + n2_y*t71 + n2_z*t73))
+        g[9] = -t61*(t59*(m2_y*t55 + m2_z*t74) + t60*(n2_y*t55 + n2_z*t74))
+        g[10] = -t61*(t59*(m2_x*t75 + m2_z*t51) + t60*(n2_x*t75 + n2_z*t51))
+        g[11] = -t61*(t59*(m2_x*t53 + m2_y*t76) + t60*(n2_x*t53 + n2_y*t76))
+        g[12] = -ratio*t78 + t80
+        frames[index[first + AT_FRAME]] = t80
+        frames[index[first + AT_FRAME] + 1] = t78
         if task == VELOCITY:
-            t900 = (n1_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + n1_y*(Ra_xy*Rb_xx +
-                Ra_yy*Rb_yx + Ra_zy*Rb_zx) + n1_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx))
-            t901 = (n1_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + n1_y*(Ra_xy*Rb_xy +
-                Ra_yy*Rb_yy + Ra_zy*Rb_zy) + n1_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy))
-            t902 = (n1_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + n1_y*(Ra_xy*Rb_xz +
-                Ra_yy*Rb_yz + Ra_zy*Rb_zz) + n1_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
+            t900 = (d1_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + d1_y*(Ra_xy*Rb_xx +
+                Ra_yy*Rb_yx + Ra_zy*Rb_zx) + d1_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx))
+            t901 = (d1_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + d1_y*(Ra_xy*Rb_xy +
+                Ra_yy*Rb_yy + Ra_zy*Rb_zy) + d1_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy))
+            t902 = (d1_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + d1_y*(Ra_xy*Rb_xz +
+                Ra_yy*Rb_yz + Ra_zy*Rb_zz) + d1_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
             t903 = n1_x*t900 + n1_y*t901 + n1_z*t902
             t904 = m1_x*t900 + m1_y*t901 + m1_z*t902
             t905 = 1/(t903*t903 + t904*t904)
@@ -256,30 +261,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t915 = -Oma_x*Ra_xy + Oma_y*Ra_xx
             t916 = -Oma_x*Ra_yy + Oma_y*Ra_yx
             t917 = -Oma_x*Ra_zy + Oma_y*Ra_zx
-            t918 = (n1_x*(Ra_xx*t906 + Ra_yx*t907 + Ra_zx*t908 + Rb_xx*t909 + Rb_yx*t910 +
-                Rb_zx*t911) + n1_y*(Ra_xy*t906 + Ra_yy*t907 + Ra_zy*t908 + Rb_xx*t912 + Rb_yx*t913
-                + Rb_zx*t914) + n1_z*(Ra_xz*t906 + Ra_yz*t907 + Ra_zz*t908 + Rb_xx*t915 +
+            t918 = (d1_x*(Ra_xx*t906 + Ra_yx*t907 + Ra_zx*t908 + Rb_xx*t909 + Rb_yx*t910 +
+                Rb_zx*t911) + d1_y*(Ra_xy*t906 + Ra_yy*t907 + Ra_zy*t908 + Rb_xx*t912 + Rb_yx*t913
+                + Rb_zx*t914) + d1_z*(Ra_xz*t906 + Ra_yz*t907 + Ra_zz*t908 + Rb_xx*t915 +
                 Rb_yx*t916 + Rb_zx*t917))
             t919 = Omb_x*Rb_xz - Omb_z*Rb_xx
             t920 = Omb_x*Rb_yz - Omb_z*Rb_yx
             t921 = Omb_x*Rb_zz - Omb_z*Rb_zx
-            t922 = (n1_x*(Ra_xx*t919 + Ra_yx*t920 + Ra_zx*t921 + Rb_xy*t909 + Rb_yy*t910 +
-                Rb_zy*t911) + n1_y*(Ra_xy*t919 + Ra_yy*t920 + Ra_zy*t921 + Rb_xy*t912 + Rb_yy*t913
-                + Rb_zy*t914) + n1_z*(Ra_xz*t919 + Ra_yz*t920 + Ra_zz*t921 + Rb_xy*t915 +
+            t922 = (d1_x*(Ra_xx*t919 + Ra_yx*t920 + Ra_zx*t921 + Rb_xy*t909 + Rb_yy*t910 +
+                Rb_zy*t911) + d1_y*(Ra_xy*t919 + Ra_yy*t920 + Ra_zy*t921 + Rb_xy*t912 + Rb_yy*t913
+                + Rb_zy*t914) + d1_z*(Ra_xz*t919 + Ra_yz*t920 + Ra_zz*t921 + Rb_xy*t915 +
                 Rb_yy*t916 + Rb_zy*t917))
             t923 = -Omb_x*Rb_xy + Omb_y*Rb_xx
             t924 = -Omb_x*Rb_yy + Omb_y*Rb_yx
             t925 = -Omb_x*Rb_zy + Omb_y*Rb_zx
-            t926 = (n1_x*(Ra_xx*t923 + Ra_yx*t924 + Ra_zx*t925 + Rb_xz*t909 + Rb_yz*t910 +
-                Rb_zz*t911) + n1_y*(Ra_xy*t923 + Ra_yy*t924 + Ra_zy*t925 + Rb_xz*t912 + Rb_yz*t913
-                + Rb_zz*t914) + n1_z*(Ra_xz*t923 + Ra_yz*t924 + Ra_zz*t925 + Rb_xz*t915 +
+            t926 = (d1_x*(Ra_xx*t923 + Ra_yx*t924 + Ra_zx*t925 + Rb_xz*t909 + Rb_yz*t910 +
+                Rb_zz*t911) + d1_y*(Ra_xy*t923 + Ra_yy*t924 + Ra_zy*t925 + Rb_xz*t912 + Rb_yz*t913
+                + Rb_zz*t914) + d1_z*(Ra_xz*t923 + Ra_yz*t924 + Ra_zz*t925 + Rb_xz*t915 +
                 Rb_yz*t916 + Rb_zz*t917))
-            t927 = (n2_x*(Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx) + n2_y*(Rc_xy*Rd_xx +
-                Rc_yy*Rd_yx + Rc_zy*Rd_zx) + n2_z*(Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx))
-            t928 = (n2_x*(Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy) + n2_y*(Rc_xy*Rd_xy +
-                Rc_yy*Rd_yy + Rc_zy*Rd_zy) + n2_z*(Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy))
-            t929 = (n2_x*(Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz) + n2_y*(Rc_xy*Rd_xz +
-                Rc_yy*Rd_yz + Rc_zy*Rd_zz) + n2_z*(Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz))
+            t927 = (d2_x*(Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx) + d2_y*(Rc_xy*Rd_xx +
+                Rc_yy*Rd_yx + Rc_zy*Rd_zx) + d2_z*(Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx))
+            t928 = (d2_x*(Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy) + d2_y*(Rc_xy*Rd_xy +
+                Rc_yy*Rd_yy + Rc_zy*Rd_zy) + d2_z*(Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy))
+            t929 = (d2_x*(Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz) + d2_y*(Rc_xy*Rd_xz +
+                Rc_yy*Rd_yz + Rc_zy*Rd_zz) + d2_z*(Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz))
             t930 = n2_x*t927 + n2_y*t928 + n2_z*t929
             t931 = m2_x*t927 + m2_y*t928 + m2_z*t929
             t932 = 1/(t930*t930 + t931*t931)
@@ -295,27 +300,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t942 = -Omc_x*Rc_xy + Omc_y*Rc_xx
             t943 = -Omc_x*Rc_yy + Omc_y*Rc_yx
             t944 = -Omc_x*Rc_zy + Omc_y*Rc_zx
-            t945 = (n2_x*(Rc_xx*t933 + Rc_yx*t934 + Rc_zx*t935 + Rd_xx*t936 + Rd_yx*t937 +
-                Rd_zx*t938) + n2_y*(Rc_xy*t933 + Rc_yy*t934 + Rc_zy*t935 + Rd_xx*t939 + Rd_yx*t940
-                + Rd_zx*t941) + n2_z*(Rc_xz*t933 + Rc_yz*t934 + Rc_zz*t935 + Rd_xx*t942 +
+            t945 = (d2_x*(Rc_xx*t933 + Rc_yx*t934 + Rc_zx*t935 + Rd_xx*t936 + Rd_yx*t937 +
+                Rd_zx*t938) + d2_y*(Rc_xy*t933 + Rc_yy*t934 + Rc_zy*t935 + Rd_xx*t939 + Rd_yx*t940
+                + Rd_zx*t941) + d2_z*(Rc_xz*t933 + Rc_yz*t934 + Rc_zz*t935 + Rd_xx*t942 +
                 Rd_yx*t943 + Rd_zx*t944))
             t946 = Omd_x*Rd_xz - Omd_z*Rd_xx
             t947 = Omd_x*Rd_yz - Omd_z*Rd_yx
             t948 = Omd_x*Rd_zz - Omd_z*Rd_zx
-            t949 = (n2_x*(Rc_xx*t946 + Rc_yx*t947 + Rc_zx*t948 + Rd_xy*t936 + Rd_yy*t937 +
-                Rd_zy*t938) + n2_y*(Rc_xy*t946 + Rc_yy*t947 + Rc_zy*t948 + Rd_xy*t939 + Rd_yy*t940
-                + Rd_zy*t941) + n2_z*(Rc_xz*t946 + Rc_yz*t947 + Rc_zz*t948 + Rd_xy*t942 +
+            t949 = (d2_x*(Rc_xx*t946 + Rc_yx*t947 + Rc_zx*t948 + Rd_xy*t936 + Rd_yy*t937 +
+                Rd_zy*t938) + d2_y*(Rc_xy*t946 + Rc_yy*t947 + Rc_zy*t948 + Rd_xy*t939 + Rd_yy*t940
+                + Rd_zy*t941) + d2_z*(Rc_xz*t946 + Rc_yz*t947 + Rc_zz*t948 + Rd_xy*t942 +
                 Rd_yy*t943 + Rd_zy*t944))
             t950 = -Omd_x*Rd_xy + Omd_y*Rd_xx
             t951 = -Omd_x*Rd_yy + Omd_y*Rd_yx
             t952 = -Omd_x*Rd_zy + Omd_y*Rd_zx
-            t953 = (n2_x*(Rc_xx*t950 + Rc_yx*t951 + Rc_zx*t952 + Rd_xz*t936 + Rd_yz*t937 +
-                Rd_zz*t938) + n2_y*(Rc_xy*t950 + Rc_yy*t951 + Rc_zy*t952 + Rd_xz*t939 + Rd_yz*t940
-                + Rd_zz*t941) + n2_z*(Rc_xz*t950 + Rc_yz*t951 + Rc_zz*t952 + Rd_xz*t942 +
+            t953 = (d2_x*(Rc_xx*t950 + Rc_yx*t951 + Rc_zx*t952 + Rd_xz*t936 + Rd_yz*t937 +
+                Rd_zz*t938) + d2_y*(Rc_xy*t950 + Rc_yy*t951 + Rc_zy*t952 + Rd_xz*t939 + Rd_yz*t940
+                + Rd_zz*t941) + d2_z*(Rc_xz*t950 + Rc_yz*t951 + Rc_zz*t952 + Rd_xz*t942 +
                 Rd_yz*t943 + Rd_zz*t944))
-            g[12] = (f1*(t903*t905*(m1_x*t918 + m1_y*t922 + m1_z*t926) - t904*t905*(n1_x*t918 +
-                n1_y*t922 + n1_z*t926)) + f2*(t930*t932*(m2_x*t945 + m2_y*t949 + m2_z*t953) -
-                t931*t932*(n2_x*t945 + n2_y*t949 + n2_z*t953)))
+            g[12] = (-ratio*(t930*t932*(m2_x*t945 + m2_y*t949 + m2_z*t953) - t931*t932*(n2_x*t945
+                + n2_y*t949 + n2_z*t953)) + t903*t905*(m1_x*t918 + m1_y*t922 + m1_z*t926) -
+                t904*t905*(n1_x*t918 + n1_y*t922 + n1_z*t926))
         if task == ACCELERATION:
             t900 = -Omb_y*Rb_xz + Omb_z*Rb_xy
             t901 = -Omb_y*Rb_yz + Omb_z*Rb_yy
@@ -329,34 +334,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t909 = -Oma_x*Ra_xy + Oma_y*Ra_xx
             t910 = -Oma_x*Ra_yy + Oma_y*Ra_yx
             t911 = -Oma_x*Ra_zy + Oma_y*Ra_zx
-            t912 = (n1_x*(Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902 + Rb_xx*t903 + Rb_yx*t904 +
-                Rb_zx*t905) + n1_y*(Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902 + Rb_xx*t906 + Rb_yx*t907
-                + Rb_zx*t908) + n1_z*(Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902 + Rb_xx*t909 +
+            t912 = (d1_x*(Ra_xx*t900 + Ra_yx*t901 + Ra_zx*t902 + Rb_xx*t903 + Rb_yx*t904 +
+                Rb_zx*t905) + d1_y*(Ra_xy*t900 + Ra_yy*t901 + Ra_zy*t902 + Rb_xx*t906 + Rb_yx*t907
+                + Rb_zx*t908) + d1_z*(Ra_xz*t900 + Ra_yz*t901 + Ra_zz*t902 + Rb_xx*t909 +
                 Rb_yx*t910 + Rb_zx*t911))
             t913 = m1_x*t912
             t914 = Omb_x*Rb_xz - Omb_z*Rb_xx
             t915 = Omb_x*Rb_yz - Omb_z*Rb_yx
             t916 = Omb_x*Rb_zz - Omb_z*Rb_zx
-            t917 = (n1_x*(Ra_xx*t914 + Ra_yx*t915 + Ra_zx*t916 + Rb_xy*t903 + Rb_yy*t904 +
-                Rb_zy*t905) + n1_y*(Ra_xy*t914 + Ra_yy*t915 + Ra_zy*t916 + Rb_xy*t906 + Rb_yy*t907
-                + Rb_zy*t908) + n1_z*(Ra_xz*t914 + Ra_yz*t915 + Ra_zz*t916 + Rb_xy*t909 +
+            t917 = (d1_x*(Ra_xx*t914 + Ra_yx*t915 + Ra_zx*t916 + Rb_xy*t903 + Rb_yy*t904 +
+                Rb_zy*t905) + d1_y*(Ra_xy*t914 + Ra_yy*t915 + Ra_zy*t916 + Rb_xy*t906 + Rb_yy*t907
+                + Rb_zy*t908) + d1_z*(Ra_xz*t914 + Ra_yz*t915 + Ra_zz*t916 + Rb_xy*t909 +
                 Rb_yy*t910 + Rb_zy*t911))
             t918 = m1_y*t917
             t919 = -Omb_x*Rb_xy + Omb_y*Rb_xx
             t920 = -Omb_x*Rb_yy + Omb_y*Rb_yx
             t921 = -Omb_x*Rb_zy + Omb_y*Rb_zx
-            t922 = (n1_x*(Ra_xx*t919 + Ra_yx*t920 + Ra_zx*t921 + Rb_xz*t903 + Rb_yz*t904 +
-                Rb_zz*t905) + n1_y*(Ra_xy*t919 + Ra_yy*t920 + Ra_zy*t921 + Rb_xz*t906 + Rb_yz*t907
-                + Rb_zz*t908) + n1_z*(Ra_xz*t919 + Ra_yz*t920 + Ra_zz*t921 + Rb_xz*t909 +
+            t922 = (d1_x*(Ra_xx*t919 + Ra_yx*t920 + Ra_zx*t921 + Rb_xz*t903 + Rb_yz*t904 +
+                Rb_zz*t905) + d1_y*(Ra_xy*t919 + Ra_yy*t920 + Ra_zy*t921 + Rb_xz*t906 + Rb_yz*t907
+                + Rb_zz*t908) + d1_z*(Ra_xz*t919 + Ra_yz*t920 + Ra_zz*t921 + Rb_xz*t909 +
                 Rb_yz*t910 + Rb_zz*t911))
             t923 = m1_z*t922
             t924 = t913 + t918 + t923
-            t925 = (n1_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + n1_y*(Ra_xy*Rb_xx +
-                Ra_yy*Rb_yx + Ra_zy*Rb_zx) + n1_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx))
-            t926 = (n1_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + n1_y*(Ra_xy*Rb_xy +
-                Ra_yy*Rb_yy + Ra_zy*Rb_zy) + n1_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy))
-            t927 = (n1_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + n1_y*(Ra_xy*Rb_xz +
-                Ra_yy*Rb_yz + Ra_zy*Rb_zz) + n1_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
+            t925 = (d1_x*(Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx) + d1_y*(Ra_xy*Rb_xx +
+                Ra_yy*Rb_yx + Ra_zy*Rb_zx) + d1_z*(Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx))
+            t926 = (d1_x*(Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy) + d1_y*(Ra_xy*Rb_xy +
+                Ra_yy*Rb_yy + Ra_zy*Rb_zy) + d1_z*(Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy))
+            t927 = (d1_x*(Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz) + d1_y*(Ra_xy*Rb_xz +
+                Ra_yy*Rb_yz + Ra_zy*Rb_zz) + d1_z*(Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz))
             t928 = m1_x*t925 + m1_y*t926 + m1_z*t927
             t929 = n1_x*t925 + n1_y*t926 + n1_z*t927
             t930 = t928*t928 + t929*t929
@@ -365,7 +370,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t933 = n1_y*t917
             t934 = n1_z*t922
             t935 = t932 + t933 + t934
-            t936 = t931*t935
             t937 = (-t928*(2*t913 + 2*t918 + 2*t923) - t929*(2*t932 + 2*t933 + 2*t934))/(t930*t930)
             t938 = -t928
             t939 = 2*t900
@@ -383,10 +387,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t951 = -Aa_x*Ra_xy + Aa_y*Ra_xx - Oma_x*t906 + Oma_y*t903
             t952 = -Aa_x*Ra_yy + Aa_y*Ra_yx - Oma_x*t907 + Oma_y*t904
             t953 = -Aa_x*Ra_zy + Aa_y*Ra_zx - Oma_x*t908 + Oma_y*t905
-            t954 = (n1_x*(Ra_xx*t942 + Ra_yx*t943 + Ra_zx*t944 + Rb_xx*t945 + Rb_yx*t946 +
-                Rb_zx*t947 + t903*t939 + t904*t940 + t905*t941) + n1_y*(Ra_xy*t942 + Ra_yy*t943 +
+            t954 = (d1_x*(Ra_xx*t942 + Ra_yx*t943 + Ra_zx*t944 + Rb_xx*t945 + Rb_yx*t946 +
+                Rb_zx*t947 + t903*t939 + t904*t940 + t905*t941) + d1_y*(Ra_xy*t942 + Ra_yy*t943 +
                 Ra_zy*t944 + Rb_xx*t948 + Rb_yx*t949 + Rb_zx*t950 + t906*t939 + t907*t940 +
-                t908*t941) + n1_z*(Ra_xz*t942 + Ra_yz*t943 + Ra_zz*t944 + Rb_xx*t951 + Rb_yx*t952
+                t908*t941) + d1_z*(Ra_xz*t942 + Ra_yz*t943 + Ra_zz*t944 + Rb_xx*t951 + Rb_yx*t952
                 + Rb_zx*t953 + t909*t939 + t910*t940 + t911*t941))
             t955 = 2*t914
             t956 = 2*t915
@@ -394,10 +398,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t958 = Ab_x*Rb_xz - Ab_z*Rb_xx + Omb_x*t919 - Omb_z*t900
             t959 = Ab_x*Rb_yz - Ab_z*Rb_yx + Omb_x*t920 - Omb_z*t901
             t960 = Ab_x*Rb_zz - Ab_z*Rb_zx + Omb_x*t921 - Omb_z*t902
-            t961 = (n1_x*(Ra_xx*t958 + Ra_yx*t959 + Ra_zx*t960 + Rb_xy*t945 + Rb_yy*t946 +
-                Rb_zy*t947 + t903*t955 + t904*t956 + t905*t957) + n1_y*(Ra_xy*t958 + Ra_yy*t959 +
+            t961 = (d1_x*(Ra_xx*t958 + Ra_yx*t959 + Ra_zx*t960 + Rb_xy*t945 + Rb_yy*t946 +
+                Rb_zy*t947 + t903*t955 + t904*t956 + t905*t957) + d1_y*(Ra_xy*t958 + Ra_yy*t959 +
                 Ra_zy*t960 + Rb_xy*t948 + Rb_yy*t949 + Rb_zy*t950 + t906*t955 + t907*t956 +
-                t908*t957) + n1_z*(Ra_xz*t958 + Ra_yz*t959 + Ra_zz*t960 + Rb_xy*t951 + Rb_yy*t952
+                t908*t957) + d1_z*(Ra_xz*t958 + Ra_yz*t959 + Ra_zz*t960 + Rb_xy*t951 + Rb_yy*t952
                 + Rb_zy*t953 + t909*t955 + t910*t956 + t911*t957))
             t962 = 2*t919
             t963 = 2*t920
@@ -405,10 +409,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t965 = -Ab_x*Rb_xy + Ab_y*Rb_xx - Omb_x*t914 + Omb_y*t900
             t966 = -Ab_x*Rb_yy + Ab_y*Rb_yx - Omb_x*t915 + Omb_y*t901
             t967 = -Ab_x*Rb_zy + Ab_y*Rb_zx - Omb_x*t916 + Omb_y*t902
-            t968 = (n1_x*(Ra_xx*t965 + Ra_yx*t966 + Ra_zx*t967 + Rb_xz*t945 + Rb_yz*t946 +
-                Rb_zz*t947 + t903*t962 + t904*t963 + t905*t964) + n1_y*(Ra_xy*t965 + Ra_yy*t966 +
+            t968 = (d1_x*(Ra_xx*t965 + Ra_yx*t966 + Ra_zx*t967 + Rb_xz*t945 + Rb_yz*t946 +
+                Rb_zz*t947 + t903*t962 + t904*t963 + t905*t964) + d1_y*(Ra_xy*t965 + Ra_yy*t966 +
                 Ra_zy*t967 + Rb_xz*t948 + Rb_yz*t949 + Rb_zz*t950 + t906*t962 + t907*t963 +
-                t908*t964) + n1_z*(Ra_xz*t965 + Ra_yz*t966 + Ra_zz*t967 + Rb_xz*t951 + Rb_yz*t952
+                t908*t964) + d1_z*(Ra_xz*t965 + Ra_yz*t966 + Ra_zz*t967 + Rb_xz*t951 + Rb_yz*t952
                 + Rb_zz*t953 + t909*t962 + t910*t963 + t911*t964))
             t969 = -Omd_y*Rd_xz + Omd_z*Rd_xy
             t970 = -Omd_y*Rd_yz + Omd_z*Rd_yy
@@ -422,34 +426,34 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t978 = -Omc_x*Rc_xy + Omc_y*Rc_xx
             t979 = -Omc_x*Rc_yy + Omc_y*Rc_yx
             t980 = -Omc_x*Rc_zy + Omc_y*Rc_zx
-            t981 = (n2_x*(Rc_xx*t969 + Rc_yx*t970 + Rc_zx*t971 + Rd_xx*t972 + Rd_yx*t973 +
-                Rd_zx*t974) + n2_y*(Rc_xy*t969 + Rc_yy*t970 + Rc_zy*t971 + Rd_xx*t975 + Rd_yx*t976
-                + Rd_zx*t977) + n2_z*(Rc_xz*t969 + Rc_yz*t970 + Rc_zz*t971 + Rd_xx*t978 +
+            t981 = (d2_x*(Rc_xx*t969 + Rc_yx*t970 + Rc_zx*t971 + Rd_xx*t972 + Rd_yx*t973 +
+                Rd_zx*t974) + d2_y*(Rc_xy*t969 + Rc_yy*t970 + Rc_zy*t971 + Rd_xx*t975 + Rd_yx*t976
+                + Rd_zx*t977) + d2_z*(Rc_xz*t969 + Rc_yz*t970 + Rc_zz*t971 + Rd_xx*t978 +
                 Rd_yx*t979 + Rd_zx*t980))
             t982 = m2_x*t981
             t983 = Omd_x*Rd_xz - Omd_z*Rd_xx
             t984 = Omd_x*Rd_yz - Omd_z*Rd_yx
             t985 = Omd_x*Rd_zz - Omd_z*Rd_zx
-            t986 = (n2_x*(Rc_xx*t983 + Rc_yx*t984 + Rc_zx*t985 + Rd_xy*t972 + Rd_yy*t973 +
-                Rd_zy*t974) + n2_y*(Rc_xy*t983 + Rc_yy*t984 + Rc_zy*t985 + Rd_xy*t975 + Rd_yy*t976
-                + Rd_zy*t977) + n2_z*(Rc_xz*t983 + Rc_yz*t984 + Rc_zz*t985 + Rd_xy*t978 +
+            t986 = (d2_x*(Rc_xx*t983 + Rc_yx*t984 + Rc_zx*t985 + Rd_xy*t972 + Rd_yy*t973 +
+                Rd_zy*t974) + d2_y*(Rc_xy*t983 + Rc_yy*t984 + Rc_zy*t985 + Rd_xy*t975 + Rd_yy*t976
+                + Rd_zy*t977) + d2_z*(Rc_xz*t983 + Rc_yz*t984 + Rc_zz*t985 + Rd_xy*t978 +
                 Rd_yy*t979 + Rd_zy*t980))
             t987 = m2_y*t986
             t988 = -Omd_x*Rd_xy + Omd_y*Rd_xx
             t989 = -Omd_x*Rd_yy + Omd_y*Rd_yx
             t990 = -Omd_x*Rd_zy + Omd_y*Rd_zx
-            t991 = (n2_x*(Rc_xx*t988 + Rc_yx*t989 + Rc_zx*t990 + Rd_xz*t972 + Rd_yz*t973 +
-                Rd_zz*t974) + n2_y*(Rc_xy*t988 + Rc_yy*t989 + Rc_zy*t990 + Rd_xz*t975 + Rd_yz*t976
-                + Rd_zz*t977) + n2_z*(Rc_xz*t988 + Rc_yz*t989 + Rc_zz*t990 + Rd_xz*t978 +
+            t991 = (d2_x*(Rc_xx*t988 + Rc_yx*t989 + Rc_zx*t990 + Rd_xz*t972 + Rd_yz*t973 +
+                Rd_zz*t974) + d2_y*(Rc_xy*t988 + Rc_yy*t989 + Rc_zy*t990 + Rd_xz*t975 + Rd_yz*t976
+                + Rd_zz*t977) + d2_z*(Rc_xz*t988 + Rc_yz*t989 + Rc_zz*t990 + Rd_xz*t978 +
                 Rd_yz*t979 + Rd_zz*t980))
             t992 = m2_z*t991
             t993 = t982 + t987 + t992
-            t994 = (n2_x*(Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx) + n2_y*(Rc_xy*Rd_xx +
-                Rc_yy*Rd_yx + Rc_zy*Rd_zx) + n2_z*(Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx))
-            t995 = (n2_x*(Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy) + n2_y*(Rc_xy*Rd_xy +
-                Rc_yy*Rd_yy + Rc_zy*Rd_zy) + n2_z*(Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy))
-            t996 = (n2_x*(Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz) + n2_y*(Rc_xy*Rd_xz +
-                Rc_yy*Rd_yz + Rc_zy*Rd_zz) + n2_z*(Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz))
+            t994 = (d2_x*(Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx) + d2_y*(Rc_xy*Rd_xx +
+                Rc_yy*Rd_yx + Rc_zy*Rd_zx) + d2_z*(Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx))
+            t995 = (d2_x*(Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy) + d2_y*(Rc_xy*Rd_xy +
+                Rc_yy*Rd_yy + Rc_zy*Rd_zy) + d2_z*(Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy))
+            t996 = (d2_x*(Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz) + d2_y*(Rc_xy*Rd_xz +
+                Rc_yy*Rd_yz + Rc_zy*Rd_zz) + d2_z*(Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz))
             t997 = m2_x*t994 + m2_y*t995 + m2_z*t996
             t998 = n2_x*t994 + n2_y*t995 + n2_z*t996
             t999 = t997*t997 + t998*t998
@@ -458,7 +462,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t1002 = n2_y*t986
             t1003 = n2_z*t991
             t1004 = t1001 + t1002 + t1003
-            t1005 = t1000*t1004
             t1006 = ((-t997*(2*t982 + 2*t987 + 2*t992) - t998*(2*t1001 + 2*t1002 +
                 2*t1003))/(t999*t999))
             t1007 = -t997
@@ -477,10 +480,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t1020 = -Ac_x*Rc_xy + Ac_y*Rc_xx - Omc_x*t975 + Omc_y*t972
             t1021 = -Ac_x*Rc_yy + Ac_y*Rc_yx - Omc_x*t976 + Omc_y*t973
             t1022 = -Ac_x*Rc_zy + Ac_y*Rc_zx - Omc_x*t977 + Omc_y*t974
-            t1023 = (n2_x*(Rc_xx*t1011 + Rc_yx*t1012 + Rc_zx*t1013 + Rd_xx*t1014 + Rd_yx*t1015 +
-                Rd_zx*t1016 + t1008*t972 + t1009*t973 + t1010*t974) + n2_y*(Rc_xy*t1011 +
+            t1023 = (d2_x*(Rc_xx*t1011 + Rc_yx*t1012 + Rc_zx*t1013 + Rd_xx*t1014 + Rd_yx*t1015 +
+                Rd_zx*t1016 + t1008*t972 + t1009*t973 + t1010*t974) + d2_y*(Rc_xy*t1011 +
                 Rc_yy*t1012 + Rc_zy*t1013 + Rd_xx*t1017 + Rd_yx*t1018 + Rd_zx*t1019 + t1008*t975 +
-                t1009*t976 + t1010*t977) + n2_z*(Rc_xz*t1011 + Rc_yz*t1012 + Rc_zz*t1013 +
+                t1009*t976 + t1010*t977) + d2_z*(Rc_xz*t1011 + Rc_yz*t1012 + Rc_zz*t1013 +
                 Rd_xx*t1020 + Rd_yx*t1021 + Rd_zx*t1022 + t1008*t978 + t1009*t979 + t1010*t980))
             t1024 = 2*t983
             t1025 = 2*t984
@@ -488,10 +491,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t1027 = Ad_x*Rd_xz - Ad_z*Rd_xx + Omd_x*t988 - Omd_z*t969
             t1028 = Ad_x*Rd_yz - Ad_z*Rd_yx + Omd_x*t989 - Omd_z*t970
             t1029 = Ad_x*Rd_zz - Ad_z*Rd_zx + Omd_x*t990 - Omd_z*t971
-            t1030 = (n2_x*(Rc_xx*t1027 + Rc_yx*t1028 + Rc_zx*t1029 + Rd_xy*t1014 + Rd_yy*t1015 +
-                Rd_zy*t1016 + t1024*t972 + t1025*t973 + t1026*t974) + n2_y*(Rc_xy*t1027 +
+            t1030 = (d2_x*(Rc_xx*t1027 + Rc_yx*t1028 + Rc_zx*t1029 + Rd_xy*t1014 + Rd_yy*t1015 +
+                Rd_zy*t1016 + t1024*t972 + t1025*t973 + t1026*t974) + d2_y*(Rc_xy*t1027 +
                 Rc_yy*t1028 + Rc_zy*t1029 + Rd_xy*t1017 + Rd_yy*t1018 + Rd_zy*t1019 + t1024*t975 +
-                t1025*t976 + t1026*t977) + n2_z*(Rc_xz*t1027 + Rc_yz*t1028 + Rc_zz*t1029 +
+                t1025*t976 + t1026*t977) + d2_z*(Rc_xz*t1027 + Rc_yz*t1028 + Rc_zz*t1029 +
                 Rd_xy*t1020 + Rd_yy*t1021 + Rd_zy*t1022 + t1024*t978 + t1025*t979 + t1026*t980))
             t1031 = 2*t988
             t1032 = 2*t989
@@ -499,15 +502,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t1034 = -Ad_x*Rd_xy + Ad_y*Rd_xx - Omd_x*t983 + Omd_y*t969
             t1035 = -Ad_x*Rd_yy + Ad_y*Rd_yx - Omd_x*t984 + Omd_y*t970
             t1036 = -Ad_x*Rd_zy + Ad_y*Rd_zx - Omd_x*t985 + Omd_y*t971
-            t1037 = (n2_x*(Rc_xx*t1034 + Rc_yx*t1035 + Rc_zx*t1036 + Rd_xz*t1014 + Rd_yz*t1015 +
-                Rd_zz*t1016 + t1031*t972 + t1032*t973 + t1033*t974) + n2_y*(Rc_xy*t1034 +
+            t1037 = (d2_x*(Rc_xx*t1034 + Rc_yx*t1035 + Rc_zx*t1036 + Rd_xz*t1014 + Rd_yz*t1015 +
+                Rd_zz*t1016 + t1031*t972 + t1032*t973 + t1033*t974) + d2_y*(Rc_xy*t1034 +
                 Rc_yy*t1035 + Rc_zy*t1036 + Rd_xz*t1017 + Rd_yz*t1018 + Rd_zz*t1019 + t1031*t975 +
-                t1032*t976 + t1033*t977) + n2_z*(Rc_xz*t1034 + Rc_yz*t1035 + Rc_zz*t1036 +
+                t1032*t976 + t1033*t977) + d2_z*(Rc_xz*t1034 + Rc_yz*t1035 + Rc_zz*t1036 +
                 Rd_xz*t1020 + Rd_yz*t1021 + Rd_zz*t1022 + t1031*t978 + t1032*t979 + t1033*t980))
-            g[12] = (f1*(t924*t929*t937 + t929*t931*(m1_x*t954 + m1_y*t961 + m1_z*t968) +
-                t931*t938*(n1_x*t954 + n1_y*t961 + n1_z*t968) + t935*t937*t938) +
-                f2*(t1000*t1007*(n2_x*t1023 + n2_y*t1030 + n2_z*t1037) + t1000*t998*(m2_x*t1023 +
-                m2_y*t1030 + m2_z*t1037) + t1004*t1006*t1007 + t1006*t993*t998))
+            g[12] = (-ratio*(t1000*t1007*(n2_x*t1023 + n2_y*t1030 + n2_z*t1037) +
+                t1000*t998*(m2_x*t1023 + m2_y*t1030 + m2_z*t1037) + t1004*t1006*t1007 +
+                t1006*t993*t998) + t924*t929*t937 + t929*t931*(m1_x*t954 + m1_y*t961 + m1_z*t968)
+                + t931*t938*(n1_x*t954 + n1_y*t961 + n1_z*t968) + t935*t937*t938)
         if task == TANGENT:
             c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
@@ -531,363 +534,363 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dthd_x = dq[9]
                 dthd_y = dq[10]
                 dthd_z = dq[11]
-                t82 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t83 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t84 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t85 = Ra_xx*dtha_y - Ra_xy*dtha_x
-                t86 = Ra_yx*dtha_y - Ra_yy*dtha_x
-                t87 = Ra_zx*dtha_y - Ra_zy*dtha_x
-                t88 = Ra_xz*t82 + Ra_yz*t83 + Ra_zz*t84 + Rb_xx*t85 + Rb_yx*t86 + Rb_zx*t87
-                t89 = -Ra_xx*dtha_z + Ra_xz*dtha_x
-                t90 = -Ra_yx*dtha_z + Ra_yz*dtha_x
-                t91 = -Ra_zx*dtha_z + Ra_zz*dtha_x
-                t92 = Ra_xy*t82 + Ra_yy*t83 + Ra_zy*t84 + Rb_xx*t89 + Rb_yx*t90 + Rb_zx*t91
-                t93 = -t92
-                t94 = n1_y*t88 + n1_z*t93
-                t95 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t96 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t97 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t98 = Ra_xz*t95 + Ra_yz*t96 + Ra_zz*t97 + Rb_xy*t85 + Rb_yy*t86 + Rb_zy*t87
-                t99 = Ra_xy*t95 + Ra_yy*t96 + Ra_zy*t97 + Rb_xy*t89 + Rb_yy*t90 + Rb_zy*t91
-                t100 = -t99
-                t101 = n1_y*t98 + n1_z*t100
-                t102 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t103 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t104 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t105 = Ra_xz*t102 + Ra_yz*t103 + Ra_zz*t104 + Rb_xz*t85 + Rb_yz*t86 + Rb_zz*t87
-                t106 = Ra_xy*t102 + Ra_yy*t103 + Ra_zy*t104 + Rb_xz*t89 + Rb_yz*t90 + Rb_zz*t91
-                t107 = -t106
-                t108 = n1_y*t105 + n1_z*t107
-                t109 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-                t110 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
-                t111 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
-                t112 = n1_x*t109 + n1_y*t110 + n1_z*t111
-                t113 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-                t114 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
-                t115 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
-                t116 = n1_x*t113 + n1_y*t114 + n1_z*t115
-                t117 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-                t118 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
-                t119 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
-                t120 = n1_x*t117 + n1_y*t118 + n1_z*t119
-                t121 = n1_x*t112 + n1_y*t116 + n1_z*t120
-                t122 = m1_x*t112 + m1_y*t116 + m1_z*t120
-                t123 = t121*t121 + t122*t122
-                t124 = 1/t123
-                t125 = t121*t124
-                t126 = -t122
-                t127 = t124*t126
-                t128 = -t110
-                t129 = n1_y*t111 + n1_z*t128
-                t130 = -t114
-                t131 = n1_y*t115 + n1_z*t130
-                t132 = -t118
-                t133 = n1_y*t119 + n1_z*t132
-                t134 = m1_x*t129 + m1_y*t131 + m1_z*t133
-                t135 = Ra_xy*dtha_z - Ra_xz*dtha_y
-                t136 = Ra_yy*dtha_z - Ra_yz*dtha_y
-                t137 = Ra_zy*dtha_z - Ra_zz*dtha_y
-                t138 = Ra_xx*t82 + Ra_yx*t83 + Ra_zx*t84 + Rb_xx*t135 + Rb_yx*t136 + Rb_zx*t137
-                t139 = n1_x*t138 + n1_y*t92 + n1_z*t88
-                t140 = n1_x*t139
-                t141 = Ra_xx*t95 + Ra_yx*t96 + Ra_zx*t97 + Rb_xy*t135 + Rb_yy*t136 + Rb_zy*t137
-                t142 = n1_x*t141 + n1_y*t99 + n1_z*t98
-                t143 = n1_y*t142
-                t144 = Ra_xx*t102 + Ra_yx*t103 + Ra_zx*t104 + Rb_xz*t135 + Rb_yz*t136 + Rb_zz*t137
-                t145 = n1_x*t144 + n1_y*t106 + n1_z*t105
-                t146 = n1_z*t145
-                t147 = t124*(t140 + t143 + t146)
-                t148 = n1_x*t129 + n1_y*t131 + n1_z*t133
-                t149 = m1_x*t139
-                t150 = m1_y*t142
-                t151 = m1_z*t145
-                t152 = t149 + t150 + t151
-                t153 = -t124*t152
-                t154 = ((-t121*(2*t140 + 2*t143 + 2*t146) - t122*(2*t149 + 2*t150 +
-                    2*t151))/(t123*t123))
-                t155 = t121*t154
-                t156 = t126*t154
-                t157 = c_stiffness*lam_1
-                t158 = f1*t157
-                t159 = -t88
-                t160 = n1_x*t159 + n1_z*t138
-                t161 = -t98
-                t162 = n1_x*t161 + n1_z*t141
-                t163 = -t105
-                t164 = n1_x*t163 + n1_z*t144
-                t165 = -t111
-                t166 = n1_x*t165 + n1_z*t109
-                t167 = -t115
-                t168 = n1_x*t167 + n1_z*t113
-                t169 = -t119
-                t170 = n1_x*t169 + n1_z*t117
-                t171 = m1_x*t166 + m1_y*t168 + m1_z*t170
-                t172 = n1_x*t166 + n1_y*t168 + n1_z*t170
-                t173 = -t138
-                t174 = n1_x*t92 + n1_y*t173
-                t175 = -t141
-                t176 = n1_x*t99 + n1_y*t175
-                t177 = -t144
-                t178 = n1_x*t106 + n1_y*t177
-                t179 = -t109
-                t180 = n1_x*t110 + n1_y*t179
-                t181 = -t113
-                t182 = n1_x*t114 + n1_y*t181
-                t183 = -t117
-                t184 = n1_x*t118 + n1_y*t183
-                t185 = m1_x*t180 + m1_y*t182 + m1_z*t184
-                t186 = n1_x*t180 + n1_y*t182 + n1_z*t184
-                t187 = n1_x*t175 + n1_y*t100 + n1_z*t161
-                t188 = n1_x*t181 + n1_y*t130 + n1_z*t167
-                t189 = m1_y*t120 + m1_z*t188
-                t190 = n1_y*t120 + n1_z*t188
-                t191 = n1_x*t177 + n1_y*t107 + n1_z*t163
-                t192 = n1_x*t183 + n1_y*t132 + n1_z*t169
-                t193 = m1_x*t192 + m1_z*t112
-                t194 = n1_x*t192 + n1_z*t112
-                t195 = n1_x*t173 + n1_y*t93 + n1_z*t159
-                t196 = n1_x*t179 + n1_y*t128 + n1_z*t165
-                t197 = m1_x*t116 + m1_y*t196
-                t198 = n1_x*t116 + n1_y*t196
-                t199 = Rd_xy*dthd_z - Rd_xz*dthd_y
-                t200 = Rd_yy*dthd_z - Rd_yz*dthd_y
-                t201 = Rd_zy*dthd_z - Rd_zz*dthd_y
-                t202 = Rc_xx*dthc_y - Rc_xy*dthc_x
-                t203 = Rc_yx*dthc_y - Rc_yy*dthc_x
-                t204 = Rc_zx*dthc_y - Rc_zy*dthc_x
-                t205 = Rc_xz*t199 + Rc_yz*t200 + Rc_zz*t201 + Rd_xx*t202 + Rd_yx*t203 + Rd_zx*t204
-                t206 = -Rc_xx*dthc_z + Rc_xz*dthc_x
-                t207 = -Rc_yx*dthc_z + Rc_yz*dthc_x
-                t208 = -Rc_zx*dthc_z + Rc_zz*dthc_x
-                t209 = Rc_xy*t199 + Rc_yy*t200 + Rc_zy*t201 + Rd_xx*t206 + Rd_yx*t207 + Rd_zx*t208
-                t210 = -t209
-                t211 = n2_y*t205 + n2_z*t210
-                t212 = -Rd_xx*dthd_z + Rd_xz*dthd_x
-                t213 = -Rd_yx*dthd_z + Rd_yz*dthd_x
-                t214 = -Rd_zx*dthd_z + Rd_zz*dthd_x
-                t215 = Rc_xz*t212 + Rc_yz*t213 + Rc_zz*t214 + Rd_xy*t202 + Rd_yy*t203 + Rd_zy*t204
-                t216 = Rc_xy*t212 + Rc_yy*t213 + Rc_zy*t214 + Rd_xy*t206 + Rd_yy*t207 + Rd_zy*t208
-                t217 = -t216
-                t218 = n2_y*t215 + n2_z*t217
-                t219 = Rd_xx*dthd_y - Rd_xy*dthd_x
-                t220 = Rd_yx*dthd_y - Rd_yy*dthd_x
-                t221 = Rd_zx*dthd_y - Rd_zy*dthd_x
-                t222 = Rc_xz*t219 + Rc_yz*t220 + Rc_zz*t221 + Rd_xz*t202 + Rd_yz*t203 + Rd_zz*t204
-                t223 = Rc_xy*t219 + Rc_yy*t220 + Rc_zy*t221 + Rd_xz*t206 + Rd_yz*t207 + Rd_zz*t208
-                t224 = -t223
-                t225 = n2_y*t222 + n2_z*t224
-                t226 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-                t227 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-                t228 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-                t229 = n2_x*t226 + n2_y*t227 + n2_z*t228
-                t230 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-                t231 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-                t232 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-                t233 = n2_x*t230 + n2_y*t231 + n2_z*t232
-                t234 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-                t235 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-                t236 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-                t237 = n2_x*t234 + n2_y*t235 + n2_z*t236
-                t238 = n2_x*t229 + n2_y*t233 + n2_z*t237
-                t239 = m2_x*t229 + m2_y*t233 + m2_z*t237
-                t240 = t238*t238 + t239*t239
-                t241 = 1/t240
-                t242 = t238*t241
-                t243 = -t239
-                t244 = t241*t243
-                t245 = -t227
-                t246 = n2_y*t228 + n2_z*t245
-                t247 = -t231
-                t248 = n2_y*t232 + n2_z*t247
-                t249 = -t235
-                t250 = n2_y*t236 + n2_z*t249
-                t251 = m2_x*t246 + m2_y*t248 + m2_z*t250
-                t252 = Rc_xy*dthc_z - Rc_xz*dthc_y
-                t253 = Rc_yy*dthc_z - Rc_yz*dthc_y
-                t254 = Rc_zy*dthc_z - Rc_zz*dthc_y
-                t255 = Rc_xx*t199 + Rc_yx*t200 + Rc_zx*t201 + Rd_xx*t252 + Rd_yx*t253 + Rd_zx*t254
-                t256 = n2_x*t255 + n2_y*t209 + n2_z*t205
-                t257 = n2_x*t256
-                t258 = Rc_xx*t212 + Rc_yx*t213 + Rc_zx*t214 + Rd_xy*t252 + Rd_yy*t253 + Rd_zy*t254
-                t259 = n2_x*t258 + n2_y*t216 + n2_z*t215
-                t260 = n2_y*t259
-                t261 = Rc_xx*t219 + Rc_yx*t220 + Rc_zx*t221 + Rd_xz*t252 + Rd_yz*t253 + Rd_zz*t254
-                t262 = n2_x*t261 + n2_y*t223 + n2_z*t222
-                t263 = n2_z*t262
-                t264 = t241*(t257 + t260 + t263)
-                t265 = n2_x*t246 + n2_y*t248 + n2_z*t250
-                t266 = m2_x*t256
-                t267 = m2_y*t259
-                t268 = m2_z*t262
-                t269 = t266 + t267 + t268
-                t270 = -t241*t269
-                t271 = ((-t238*(2*t257 + 2*t260 + 2*t263) - t239*(2*t266 + 2*t267 +
-                    2*t268))/(t240*t240))
-                t272 = t238*t271
-                t273 = t243*t271
-                t274 = f2*t157
-                t275 = -t205
-                t276 = n2_x*t275 + n2_z*t255
-                t277 = -t215
-                t278 = n2_x*t277 + n2_z*t258
-                t279 = -t222
-                t280 = n2_x*t279 + n2_z*t261
-                t281 = -t228
-                t282 = n2_x*t281 + n2_z*t226
-                t283 = -t232
-                t284 = n2_x*t283 + n2_z*t230
-                t285 = -t236
-                t286 = n2_x*t285 + n2_z*t234
-                t287 = m2_x*t282 + m2_y*t284 + m2_z*t286
-                t288 = n2_x*t282 + n2_y*t284 + n2_z*t286
-                t289 = -t255
-                t290 = n2_x*t209 + n2_y*t289
-                t291 = -t258
-                t292 = n2_x*t216 + n2_y*t291
-                t293 = -t261
-                t294 = n2_x*t223 + n2_y*t293
-                t295 = -t226
-                t296 = n2_x*t227 + n2_y*t295
-                t297 = -t230
-                t298 = n2_x*t231 + n2_y*t297
-                t299 = -t234
-                t300 = n2_x*t235 + n2_y*t299
-                t301 = m2_x*t296 + m2_y*t298 + m2_z*t300
-                t302 = n2_x*t296 + n2_y*t298 + n2_z*t300
-                t303 = n2_x*t291 + n2_y*t217 + n2_z*t277
-                t304 = n2_x*t297 + n2_y*t247 + n2_z*t283
-                t305 = m2_y*t237 + m2_z*t304
-                t306 = n2_y*t237 + n2_z*t304
-                t307 = n2_x*t293 + n2_y*t224 + n2_z*t279
-                t308 = n2_x*t299 + n2_y*t249 + n2_z*t285
-                t309 = m2_x*t308 + m2_z*t229
-                t310 = n2_x*t308 + n2_z*t229
-                t311 = n2_x*t289 + n2_y*t210 + n2_z*t275
-                t312 = n2_x*t295 + n2_y*t245 + n2_z*t281
-                t313 = m2_x*t233 + m2_y*t312
-                t314 = n2_x*t233 + n2_y*t312
-                J[column] = (t158*(t125*(m1_x*t94 + m1_y*t101 + m1_z*t108) + t127*(n1_x*t94 +
-                    n1_y*t101 + n1_z*t108) + t134*t147 + t134*t155 + t148*t153 + t148*t156))
-                J[13 + column] = (t158*(t125*(m1_x*t160 + m1_y*t162 + m1_z*t164) + t127*(n1_x*t160
-                    + n1_y*t162 + n1_z*t164) + t147*t171 + t153*t172 + t155*t171 + t156*t172))
-                J[26 + column] = (t158*(t125*(m1_x*t174 + m1_y*t176 + m1_z*t178) + t127*(n1_x*t174
-                    + n1_y*t176 + n1_z*t178) + t147*t185 + t153*t186 + t155*t185 + t156*t186))
-                J[39 + column] = (t158*(t125*(m1_y*t145 + m1_z*t187) + t127*(n1_y*t145 +
-                    n1_z*t187) + t147*t189 + t153*t190 + t155*t189 + t156*t190))
-                J[52 + column] = (t158*(t125*(m1_x*t191 + m1_z*t139) + t127*(n1_x*t191 +
-                    n1_z*t139) + t147*t193 + t153*t194 + t155*t193 + t156*t194))
-                J[65 + column] = (t158*(t125*(m1_x*t142 + m1_y*t195) + t127*(n1_x*t142 +
-                    n1_y*t195) + t147*t197 + t153*t198 + t155*t197 + t156*t198))
-                J[78 + column] = (t274*(t242*(m2_x*t211 + m2_y*t218 + m2_z*t225) + t244*(n2_x*t211
-                    + n2_y*t218 + n2_z*t225) + t251*t264 + t251*t272 + t265*t270 + t265*t273))
-                J[91 + column] = (t274*(t242*(m2_x*t276 + m2_y*t278 + m2_z*t280) + t244*(n2_x*t276
-                    + n2_y*t278 + n2_z*t280) + t264*t287 + t270*t288 + t272*t287 + t273*t288))
-                J[104 + column] = (t274*(t242*(m2_x*t290 + m2_y*t292 + m2_z*t294) +
-                    t244*(n2_x*t290 + n2_y*t292 + n2_z*t294) + t264*t301 + t270*t302 + t272*t301 +
-                    t273*t302))
-                J[117 + column] = (t274*(t242*(m2_y*t262 + m2_z*t303) + t244*(n2_y*t262 +
-                    n2_z*t303) + t264*t305 + t270*t306 + t272*t305 + t273*t306))
-                J[130 + column] = (t274*(t242*(m2_x*t307 + m2_z*t256) + t244*(n2_x*t307 +
-                    n2_z*t256) + t264*t309 + t270*t310 + t272*t309 + t273*t310))
-                J[143 + column] = (t274*(t242*(m2_x*t259 + m2_y*t311) + t244*(n2_x*t259 +
-                    n2_y*t311) + t264*t313 + t270*t314 + t272*t313 + t273*t314))
-                J[156 + column] = (c_constraint*(f1*(t125*t152 + t126*t147) + f2*(t242*t269 +
-                    t243*t264)))
+                t81 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t82 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t83 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t84 = Ra_xx*dtha_y - Ra_xy*dtha_x
+                t85 = Ra_yx*dtha_y - Ra_yy*dtha_x
+                t86 = Ra_zx*dtha_y - Ra_zy*dtha_x
+                t87 = Ra_xz*t81 + Ra_yz*t82 + Ra_zz*t83 + Rb_xx*t84 + Rb_yx*t85 + Rb_zx*t86
+                t88 = -Ra_xx*dtha_z + Ra_xz*dtha_x
+                t89 = -Ra_yx*dtha_z + Ra_yz*dtha_x
+                t90 = -Ra_zx*dtha_z + Ra_zz*dtha_x
+                t91 = Ra_xy*t81 + Ra_yy*t82 + Ra_zy*t83 + Rb_xx*t88 + Rb_yx*t89 + Rb_zx*t90
+                t92 = -t91
+                t93 = d1_y*t87 + d1_z*t92
+                t94 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t95 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t96 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t97 = Ra_xz*t94 + Ra_yz*t95 + Ra_zz*t96 + Rb_xy*t84 + Rb_yy*t85 + Rb_zy*t86
+                t98 = Ra_xy*t94 + Ra_yy*t95 + Ra_zy*t96 + Rb_xy*t88 + Rb_yy*t89 + Rb_zy*t90
+                t99 = -t98
+                t100 = d1_y*t97 + d1_z*t99
+                t101 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t102 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t103 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t104 = Ra_xz*t101 + Ra_yz*t102 + Ra_zz*t103 + Rb_xz*t84 + Rb_yz*t85 + Rb_zz*t86
+                t105 = Ra_xy*t101 + Ra_yy*t102 + Ra_zy*t103 + Rb_xz*t88 + Rb_yz*t89 + Rb_zz*t90
+                t106 = -t105
+                t107 = d1_y*t104 + d1_z*t106
+                t108 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
+                t109 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
+                t110 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
+                t111 = d1_x*t108 + d1_y*t109 + d1_z*t110
+                t112 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
+                t113 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
+                t114 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
+                t115 = d1_x*t112 + d1_y*t113 + d1_z*t114
+                t116 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
+                t117 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
+                t118 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
+                t119 = d1_x*t116 + d1_y*t117 + d1_z*t118
+                t120 = n1_x*t111 + n1_y*t115 + n1_z*t119
+                t121 = m1_x*t111 + m1_y*t115 + m1_z*t119
+                t122 = t120*t120 + t121*t121
+                t123 = 1/t122
+                t124 = t120*t123
+                t125 = -t121
+                t126 = t123*t125
+                t127 = -t109
+                t128 = d1_y*t110 + d1_z*t127
+                t129 = -t113
+                t130 = d1_y*t114 + d1_z*t129
+                t131 = -t117
+                t132 = d1_y*t118 + d1_z*t131
+                t133 = m1_x*t128 + m1_y*t130 + m1_z*t132
+                t134 = Ra_xy*dtha_z - Ra_xz*dtha_y
+                t135 = Ra_yy*dtha_z - Ra_yz*dtha_y
+                t136 = Ra_zy*dtha_z - Ra_zz*dtha_y
+                t137 = Ra_xx*t81 + Ra_yx*t82 + Ra_zx*t83 + Rb_xx*t134 + Rb_yx*t135 + Rb_zx*t136
+                t138 = d1_x*t137 + d1_y*t91 + d1_z*t87
+                t139 = n1_x*t138
+                t140 = Ra_xx*t94 + Ra_yx*t95 + Ra_zx*t96 + Rb_xy*t134 + Rb_yy*t135 + Rb_zy*t136
+                t141 = d1_x*t140 + d1_y*t98 + d1_z*t97
+                t142 = n1_y*t141
+                t143 = Ra_xx*t101 + Ra_yx*t102 + Ra_zx*t103 + Rb_xz*t134 + Rb_yz*t135 + Rb_zz*t136
+                t144 = d1_x*t143 + d1_y*t105 + d1_z*t104
+                t145 = n1_z*t144
+                t146 = t123*(t139 + t142 + t145)
+                t147 = n1_x*t128 + n1_y*t130 + n1_z*t132
+                t148 = m1_x*t138
+                t149 = m1_y*t141
+                t150 = m1_z*t144
+                t151 = t148 + t149 + t150
+                t152 = -t123*t151
+                t153 = ((-t120*(2*t139 + 2*t142 + 2*t145) - t121*(2*t148 + 2*t149 +
+                    2*t150))/(t122*t122))
+                t154 = t120*t153
+                t155 = t125*t153
+                t156 = c_stiffness*lam_1
+                t157 = -t87
+                t158 = d1_x*t157 + d1_z*t137
+                t159 = -t97
+                t160 = d1_x*t159 + d1_z*t140
+                t161 = -t104
+                t162 = d1_x*t161 + d1_z*t143
+                t163 = -t110
+                t164 = d1_x*t163 + d1_z*t108
+                t165 = -t114
+                t166 = d1_x*t165 + d1_z*t112
+                t167 = -t118
+                t168 = d1_x*t167 + d1_z*t116
+                t169 = m1_x*t164 + m1_y*t166 + m1_z*t168
+                t170 = n1_x*t164 + n1_y*t166 + n1_z*t168
+                t171 = -t137
+                t172 = d1_x*t91 + d1_y*t171
+                t173 = -t140
+                t174 = d1_x*t98 + d1_y*t173
+                t175 = -t143
+                t176 = d1_x*t105 + d1_y*t175
+                t177 = -t108
+                t178 = d1_x*t109 + d1_y*t177
+                t179 = -t112
+                t180 = d1_x*t113 + d1_y*t179
+                t181 = -t116
+                t182 = d1_x*t117 + d1_y*t181
+                t183 = m1_x*t178 + m1_y*t180 + m1_z*t182
+                t184 = n1_x*t178 + n1_y*t180 + n1_z*t182
+                t185 = d1_x*t173 + d1_y*t99 + d1_z*t159
+                t186 = d1_x*t179 + d1_y*t129 + d1_z*t165
+                t187 = m1_y*t119 + m1_z*t186
+                t188 = n1_y*t119 + n1_z*t186
+                t189 = d1_x*t175 + d1_y*t106 + d1_z*t161
+                t190 = d1_x*t181 + d1_y*t131 + d1_z*t167
+                t191 = m1_x*t190 + m1_z*t111
+                t192 = n1_x*t190 + n1_z*t111
+                t193 = d1_x*t171 + d1_y*t92 + d1_z*t157
+                t194 = d1_x*t177 + d1_y*t127 + d1_z*t163
+                t195 = m1_x*t115 + m1_y*t194
+                t196 = n1_x*t115 + n1_y*t194
+                t197 = Rd_xy*dthd_z - Rd_xz*dthd_y
+                t198 = Rd_yy*dthd_z - Rd_yz*dthd_y
+                t199 = Rd_zy*dthd_z - Rd_zz*dthd_y
+                t200 = Rc_xx*dthc_y - Rc_xy*dthc_x
+                t201 = Rc_yx*dthc_y - Rc_yy*dthc_x
+                t202 = Rc_zx*dthc_y - Rc_zy*dthc_x
+                t203 = Rc_xz*t197 + Rc_yz*t198 + Rc_zz*t199 + Rd_xx*t200 + Rd_yx*t201 + Rd_zx*t202
+                t204 = -Rc_xx*dthc_z + Rc_xz*dthc_x
+                t205 = -Rc_yx*dthc_z + Rc_yz*dthc_x
+                t206 = -Rc_zx*dthc_z + Rc_zz*dthc_x
+                t207 = Rc_xy*t197 + Rc_yy*t198 + Rc_zy*t199 + Rd_xx*t204 + Rd_yx*t205 + Rd_zx*t206
+                t208 = -t207
+                t209 = d2_y*t203 + d2_z*t208
+                t210 = -Rd_xx*dthd_z + Rd_xz*dthd_x
+                t211 = -Rd_yx*dthd_z + Rd_yz*dthd_x
+                t212 = -Rd_zx*dthd_z + Rd_zz*dthd_x
+                t213 = Rc_xz*t210 + Rc_yz*t211 + Rc_zz*t212 + Rd_xy*t200 + Rd_yy*t201 + Rd_zy*t202
+                t214 = Rc_xy*t210 + Rc_yy*t211 + Rc_zy*t212 + Rd_xy*t204 + Rd_yy*t205 + Rd_zy*t206
+                t215 = -t214
+                t216 = d2_y*t213 + d2_z*t215
+                t217 = Rd_xx*dthd_y - Rd_xy*dthd_x
+                t218 = Rd_yx*dthd_y - Rd_yy*dthd_x
+                t219 = Rd_zx*dthd_y - Rd_zy*dthd_x
+                t220 = Rc_xz*t217 + Rc_yz*t218 + Rc_zz*t219 + Rd_xz*t200 + Rd_yz*t201 + Rd_zz*t202
+                t221 = Rc_xy*t217 + Rc_yy*t218 + Rc_zy*t219 + Rd_xz*t204 + Rd_yz*t205 + Rd_zz*t206
+                t222 = -t221
+                t223 = d2_y*t220 + d2_z*t222
+                t224 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+                t225 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+                t226 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+                t227 = d2_x*t224 + d2_y*t225 + d2_z*t226
+                t228 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+                t229 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+                t230 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+                t231 = d2_x*t228 + d2_y*t229 + d2_z*t230
+                t232 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+                t233 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+                t234 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+                t235 = d2_x*t232 + d2_y*t233 + d2_z*t234
+                t236 = n2_x*t227 + n2_y*t231 + n2_z*t235
+                t237 = m2_x*t227 + m2_y*t231 + m2_z*t235
+                t238 = t236*t236 + t237*t237
+                t239 = 1/t238
+                t240 = t236*t239
+                t241 = -t237
+                t242 = t239*t241
+                t243 = -t225
+                t244 = d2_y*t226 + d2_z*t243
+                t245 = -t229
+                t246 = d2_y*t230 + d2_z*t245
+                t247 = -t233
+                t248 = d2_y*t234 + d2_z*t247
+                t249 = m2_x*t244 + m2_y*t246 + m2_z*t248
+                t250 = Rc_xy*dthc_z - Rc_xz*dthc_y
+                t251 = Rc_yy*dthc_z - Rc_yz*dthc_y
+                t252 = Rc_zy*dthc_z - Rc_zz*dthc_y
+                t253 = Rc_xx*t197 + Rc_yx*t198 + Rc_zx*t199 + Rd_xx*t250 + Rd_yx*t251 + Rd_zx*t252
+                t254 = d2_x*t253 + d2_y*t207 + d2_z*t203
+                t255 = n2_x*t254
+                t256 = Rc_xx*t210 + Rc_yx*t211 + Rc_zx*t212 + Rd_xy*t250 + Rd_yy*t251 + Rd_zy*t252
+                t257 = d2_x*t256 + d2_y*t214 + d2_z*t213
+                t258 = n2_y*t257
+                t259 = Rc_xx*t217 + Rc_yx*t218 + Rc_zx*t219 + Rd_xz*t250 + Rd_yz*t251 + Rd_zz*t252
+                t260 = d2_x*t259 + d2_y*t221 + d2_z*t220
+                t261 = n2_z*t260
+                t262 = t239*(t255 + t258 + t261)
+                t263 = n2_x*t244 + n2_y*t246 + n2_z*t248
+                t264 = m2_x*t254
+                t265 = m2_y*t257
+                t266 = m2_z*t260
+                t267 = t264 + t265 + t266
+                t268 = -t239*t267
+                t269 = ((-t236*(2*t255 + 2*t258 + 2*t261) - t237*(2*t264 + 2*t265 +
+                    2*t266))/(t238*t238))
+                t270 = t236*t269
+                t271 = t241*t269
+                t272 = ratio*t156
+                t273 = -t203
+                t274 = d2_x*t273 + d2_z*t253
+                t275 = -t213
+                t276 = d2_x*t275 + d2_z*t256
+                t277 = -t220
+                t278 = d2_x*t277 + d2_z*t259
+                t279 = -t226
+                t280 = d2_x*t279 + d2_z*t224
+                t281 = -t230
+                t282 = d2_x*t281 + d2_z*t228
+                t283 = -t234
+                t284 = d2_x*t283 + d2_z*t232
+                t285 = m2_x*t280 + m2_y*t282 + m2_z*t284
+                t286 = n2_x*t280 + n2_y*t282 + n2_z*t284
+                t287 = -t253
+                t288 = d2_x*t207 + d2_y*t287
+                t289 = -t256
+                t290 = d2_x*t214 + d2_y*t289
+                t291 = -t259
+                t292 = d2_x*t221 + d2_y*t291
+                t293 = -t224
+                t294 = d2_x*t225 + d2_y*t293
+                t295 = -t228
+                t296 = d2_x*t229 + d2_y*t295
+                t297 = -t232
+                t298 = d2_x*t233 + d2_y*t297
+                t299 = m2_x*t294 + m2_y*t296 + m2_z*t298
+                t300 = n2_x*t294 + n2_y*t296 + n2_z*t298
+                t301 = d2_x*t289 + d2_y*t215 + d2_z*t275
+                t302 = d2_x*t295 + d2_y*t245 + d2_z*t281
+                t303 = m2_y*t235 + m2_z*t302
+                t304 = n2_y*t235 + n2_z*t302
+                t305 = d2_x*t291 + d2_y*t222 + d2_z*t277
+                t306 = d2_x*t297 + d2_y*t247 + d2_z*t283
+                t307 = m2_x*t306 + m2_z*t227
+                t308 = n2_x*t306 + n2_z*t227
+                t309 = d2_x*t287 + d2_y*t208 + d2_z*t273
+                t310 = d2_x*t293 + d2_y*t243 + d2_z*t279
+                t311 = m2_x*t231 + m2_y*t310
+                t312 = n2_x*t231 + n2_y*t310
+                J[column] = (t156*(t124*(m1_x*t93 + m1_y*t100 + m1_z*t107) + t126*(n1_x*t93 +
+                    n1_y*t100 + n1_z*t107) + t133*t146 + t133*t154 + t147*t152 + t147*t155))
+                J[13 + column] = (t156*(t124*(m1_x*t158 + m1_y*t160 + m1_z*t162) + t126*(n1_x*t158
+                    + n1_y*t160 + n1_z*t162) + t146*t169 + t152*t170 + t154*t169 + t155*t170))
+                J[26 + column] = (t156*(t124*(m1_x*t172 + m1_y*t174 + m1_z*t176) + t126*(n1_x*t172
+                    + n1_y*t174 + n1_z*t176) + t146*t183 + t152*t184 + t154*t183 + t155*t184))
+                J[39 + column] = (t156*(t124*(m1_y*t144 + m1_z*t185) + t126*(n1_y*t144 +
+                    n1_z*t185) + t146*t187 + t152*t188 + t154*t187 + t155*t188))
+                J[52 + column] = (t156*(t124*(m1_x*t189 + m1_z*t138) + t126*(n1_x*t189 +
+                    n1_z*t138) + t146*t191 + t152*t192 + t154*t191 + t155*t192))
+                J[65 + column] = (t156*(t124*(m1_x*t141 + m1_y*t193) + t126*(n1_x*t141 +
+                    n1_y*t193) + t146*t195 + t152*t196 + t154*t195 + t155*t196))
+                J[78 + column] = (-t272*(t240*(m2_x*t209 + m2_y*t216 + m2_z*t223) +
+                    t242*(n2_x*t209 + n2_y*t216 + n2_z*t223) + t249*t262 + t249*t270 + t263*t268 +
+                    t263*t271))
+                J[91 + column] = (-t272*(t240*(m2_x*t274 + m2_y*t276 + m2_z*t278) +
+                    t242*(n2_x*t274 + n2_y*t276 + n2_z*t278) + t262*t285 + t268*t286 + t270*t285 +
+                    t271*t286))
+                J[104 + column] = (-t272*(t240*(m2_x*t288 + m2_y*t290 + m2_z*t292) +
+                    t242*(n2_x*t288 + n2_y*t290 + n2_z*t292) + t262*t299 + t268*t300 + t270*t299 +
+                    t271*t300))
+                J[117 + column] = (-t272*(t240*(m2_y*t260 + m2_z*t301) + t242*(n2_y*t260 +
+                    n2_z*t301) + t262*t303 + t268*t304 + t270*t303 + t271*t304))
+                J[130 + column] = (-t272*(t240*(m2_x*t305 + m2_z*t254) + t242*(n2_x*t305 +
+                    n2_z*t254) + t262*t307 + t268*t308 + t270*t307 + t271*t308))
+                J[143 + column] = (-t272*(t240*(m2_x*t257 + m2_y*t309) + t242*(n2_x*t257 +
+                    n2_y*t309) + t262*t311 + t268*t312 + t270*t311 + t271*t312))
+                J[156 + column] = (c_constraint*(-ratio*(t240*t267 + t241*t262) + t124*t151 +
+                    t125*t146))
             t700 = Ra_xz*Rb_xx + Ra_yz*Rb_yx + Ra_zz*Rb_zx
             t701 = Ra_xy*Rb_xx + Ra_yy*Rb_yx + Ra_zy*Rb_zx
             t702 = -t701
-            t703 = n1_y*t700 + n1_z*t702
+            t703 = d1_y*t700 + d1_z*t702
             t704 = Ra_xz*Rb_xy + Ra_yz*Rb_yy + Ra_zz*Rb_zy
             t705 = Ra_xy*Rb_xy + Ra_yy*Rb_yy + Ra_zy*Rb_zy
             t706 = -t705
-            t707 = n1_y*t704 + n1_z*t706
+            t707 = d1_y*t704 + d1_z*t706
             t708 = Ra_xz*Rb_xz + Ra_yz*Rb_yz + Ra_zz*Rb_zz
             t709 = Ra_xy*Rb_xz + Ra_yy*Rb_yz + Ra_zy*Rb_zz
             t710 = -t709
-            t711 = n1_y*t708 + n1_z*t710
+            t711 = d1_y*t708 + d1_z*t710
             t712 = Ra_xx*Rb_xx + Ra_yx*Rb_yx + Ra_zx*Rb_zx
-            t713 = n1_x*t712 + n1_y*t701 + n1_z*t700
+            t713 = d1_x*t712 + d1_y*t701 + d1_z*t700
             t714 = Ra_xx*Rb_xy + Ra_yx*Rb_yy + Ra_zx*Rb_zy
-            t715 = n1_x*t714 + n1_y*t705 + n1_z*t704
+            t715 = d1_x*t714 + d1_y*t705 + d1_z*t704
             t716 = Ra_xx*Rb_xz + Ra_yx*Rb_yz + Ra_zx*Rb_zz
-            t717 = n1_x*t716 + n1_y*t709 + n1_z*t708
+            t717 = d1_x*t716 + d1_y*t709 + d1_z*t708
             t718 = m1_x*t713 + m1_y*t715 + m1_z*t717
             t719 = n1_x*t713 + n1_y*t715 + n1_z*t717
             t720 = 1/(t718*t718 + t719*t719)
             t721 = t719*t720
             t722 = -t718*t720
-            t723 = c_constraint*f1
-            t724 = -t700
-            t725 = n1_x*t724 + n1_z*t712
-            t726 = -t704
-            t727 = n1_x*t726 + n1_z*t714
-            t728 = -t708
-            t729 = n1_x*t728 + n1_z*t716
-            t730 = -t712
-            t731 = n1_x*t701 + n1_y*t730
-            t732 = -t714
-            t733 = n1_x*t705 + n1_y*t732
-            t734 = -t716
-            t735 = n1_x*t709 + n1_y*t734
-            t736 = n1_x*t732 + n1_y*t706 + n1_z*t726
-            t737 = n1_x*t734 + n1_y*t710 + n1_z*t728
-            t738 = n1_x*t730 + n1_y*t702 + n1_z*t724
-            t739 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
-            t740 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
-            t741 = -t740
-            t742 = n2_y*t739 + n2_z*t741
-            t743 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
-            t744 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
-            t745 = -t744
-            t746 = n2_y*t743 + n2_z*t745
-            t747 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
-            t748 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
-            t749 = -t748
-            t750 = n2_y*t747 + n2_z*t749
-            t751 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
-            t752 = n2_x*t751 + n2_y*t740 + n2_z*t739
-            t753 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
-            t754 = n2_x*t753 + n2_y*t744 + n2_z*t743
-            t755 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
-            t756 = n2_x*t755 + n2_y*t748 + n2_z*t747
-            t757 = m2_x*t752 + m2_y*t754 + m2_z*t756
-            t758 = n2_x*t752 + n2_y*t754 + n2_z*t756
-            t759 = 1/(t757*t757 + t758*t758)
-            t760 = t758*t759
-            t761 = -t757*t759
-            t762 = c_constraint*f2
-            t763 = -t739
-            t764 = n2_x*t763 + n2_z*t751
-            t765 = -t743
-            t766 = n2_x*t765 + n2_z*t753
-            t767 = -t747
-            t768 = n2_x*t767 + n2_z*t755
-            t769 = -t751
-            t770 = n2_x*t740 + n2_y*t769
-            t771 = -t753
-            t772 = n2_x*t744 + n2_y*t771
-            t773 = -t755
-            t774 = n2_x*t748 + n2_y*t773
-            t775 = n2_x*t771 + n2_y*t745 + n2_z*t765
-            t776 = n2_x*t773 + n2_y*t749 + n2_z*t767
-            t777 = n2_x*t769 + n2_y*t741 + n2_z*t763
-            J[12] = (t723*(t721*(m1_x*t703 + m1_y*t707 + m1_z*t711) + t722*(n1_x*t703 + n1_y*t707
-                + n1_z*t711)))
-            J[25] = (t723*(t721*(m1_x*t725 + m1_y*t727 + m1_z*t729) + t722*(n1_x*t725 + n1_y*t727
-                + n1_z*t729)))
-            J[38] = (t723*(t721*(m1_x*t731 + m1_y*t733 + m1_z*t735) + t722*(n1_x*t731 + n1_y*t733
-                + n1_z*t735)))
-            J[51] = t723*(t721*(m1_y*t717 + m1_z*t736) + t722*(n1_y*t717 + n1_z*t736))
-            J[64] = t723*(t721*(m1_x*t737 + m1_z*t713) + t722*(n1_x*t737 + n1_z*t713))
-            J[77] = t723*(t721*(m1_x*t715 + m1_y*t738) + t722*(n1_x*t715 + n1_y*t738))
-            J[90] = (t762*(t760*(m2_x*t742 + m2_y*t746 + m2_z*t750) + t761*(n2_x*t742 + n2_y*t746
-                + n2_z*t750)))
-            J[103] = (t762*(t760*(m2_x*t764 + m2_y*t766 + m2_z*t768) + t761*(n2_x*t764 + n2_y*t766
-                + n2_z*t768)))
-            J[116] = (t762*(t760*(m2_x*t770 + m2_y*t772 + m2_z*t774) + t761*(n2_x*t770 + n2_y*t772
-                + n2_z*t774)))
-            J[129] = t762*(t760*(m2_y*t756 + m2_z*t775) + t761*(n2_y*t756 + n2_z*t775))
-            J[142] = t762*(t760*(m2_x*t776 + m2_z*t752) + t761*(n2_x*t776 + n2_z*t752))
-            J[155] = t762*(t760*(m2_x*t754 + m2_y*t777) + t761*(n2_x*t754 + n2_y*t777))
+            t723 = -t700
+            t724 = d1_x*t723 + d1_z*t712
+            t725 = -t704
+            t726 = d1_x*t725 + d1_z*t714
+            t727 = -t708
+            t728 = d1_x*t727 + d1_z*t716
+            t729 = -t712
+            t730 = d1_x*t701 + d1_y*t729
+            t731 = -t714
+            t732 = d1_x*t705 + d1_y*t731
+            t733 = -t716
+            t734 = d1_x*t709 + d1_y*t733
+            t735 = d1_x*t731 + d1_y*t706 + d1_z*t725
+            t736 = d1_x*t733 + d1_y*t710 + d1_z*t727
+            t737 = d1_x*t729 + d1_y*t702 + d1_z*t723
+            t738 = Rc_xz*Rd_xx + Rc_yz*Rd_yx + Rc_zz*Rd_zx
+            t739 = Rc_xy*Rd_xx + Rc_yy*Rd_yx + Rc_zy*Rd_zx
+            t740 = -t739
+            t741 = d2_y*t738 + d2_z*t740
+            t742 = Rc_xz*Rd_xy + Rc_yz*Rd_yy + Rc_zz*Rd_zy
+            t743 = Rc_xy*Rd_xy + Rc_yy*Rd_yy + Rc_zy*Rd_zy
+            t744 = -t743
+            t745 = d2_y*t742 + d2_z*t744
+            t746 = Rc_xz*Rd_xz + Rc_yz*Rd_yz + Rc_zz*Rd_zz
+            t747 = Rc_xy*Rd_xz + Rc_yy*Rd_yz + Rc_zy*Rd_zz
+            t748 = -t747
+            t749 = d2_y*t746 + d2_z*t748
+            t750 = Rc_xx*Rd_xx + Rc_yx*Rd_yx + Rc_zx*Rd_zx
+            t751 = d2_x*t750 + d2_y*t739 + d2_z*t738
+            t752 = Rc_xx*Rd_xy + Rc_yx*Rd_yy + Rc_zx*Rd_zy
+            t753 = d2_x*t752 + d2_y*t743 + d2_z*t742
+            t754 = Rc_xx*Rd_xz + Rc_yx*Rd_yz + Rc_zx*Rd_zz
+            t755 = d2_x*t754 + d2_y*t747 + d2_z*t746
+            t756 = m2_x*t751 + m2_y*t753 + m2_z*t755
+            t757 = n2_x*t751 + n2_y*t753 + n2_z*t755
+            t758 = 1/(t756*t756 + t757*t757)
+            t759 = t757*t758
+            t760 = -t756*t758
+            t761 = c_constraint*ratio
+            t762 = -t738
+            t763 = d2_x*t762 + d2_z*t750
+            t764 = -t742
+            t765 = d2_x*t764 + d2_z*t752
+            t766 = -t746
+            t767 = d2_x*t766 + d2_z*t754
+            t768 = -t750
+            t769 = d2_x*t739 + d2_y*t768
+            t770 = -t752
+            t771 = d2_x*t743 + d2_y*t770
+            t772 = -t754
+            t773 = d2_x*t747 + d2_y*t772
+            t774 = d2_x*t770 + d2_y*t744 + d2_z*t764
+            t775 = d2_x*t772 + d2_y*t748 + d2_z*t766
+            t776 = d2_x*t768 + d2_y*t740 + d2_z*t762
+            J[12] = (c_constraint*(t721*(m1_x*t703 + m1_y*t707 + m1_z*t711) + t722*(n1_x*t703 +
+                n1_y*t707 + n1_z*t711)))
+            J[25] = (c_constraint*(t721*(m1_x*t724 + m1_y*t726 + m1_z*t728) + t722*(n1_x*t724 +
+                n1_y*t726 + n1_z*t728)))
+            J[38] = (c_constraint*(t721*(m1_x*t730 + m1_y*t732 + m1_z*t734) + t722*(n1_x*t730 +
+                n1_y*t732 + n1_z*t734)))
+            J[51] = c_constraint*(t721*(m1_y*t717 + m1_z*t735) + t722*(n1_y*t717 + n1_z*t735))
+            J[64] = c_constraint*(t721*(m1_x*t736 + m1_z*t713) + t722*(n1_x*t736 + n1_z*t713))
+            J[77] = c_constraint*(t721*(m1_x*t715 + m1_y*t737) + t722*(n1_x*t715 + n1_y*t737))
+            J[90] = (-t761*(t759*(m2_x*t741 + m2_y*t745 + m2_z*t749) + t760*(n2_x*t741 + n2_y*t745
+                + n2_z*t749)))
+            J[103] = (-t761*(t759*(m2_x*t763 + m2_y*t765 + m2_z*t767) + t760*(n2_x*t763 +
+                n2_y*t765 + n2_z*t767)))
+            J[116] = (-t761*(t759*(m2_x*t769 + m2_y*t771 + m2_z*t773) + t760*(n2_x*t769 +
+                n2_y*t771 + n2_z*t773)))
+            J[129] = -t761*(t759*(m2_y*t755 + m2_z*t774) + t760*(n2_y*t755 + n2_z*t774))
+            J[142] = -t761*(t759*(m2_x*t775 + m2_z*t751) + t760*(n2_x*t775 + n2_z*t751))
+            J[155] = -t761*(t759*(m2_x*t753 + m2_y*t776) + t760*(n2_x*t753 + n2_y*t776))
             J[168] = 0.0
     return OK

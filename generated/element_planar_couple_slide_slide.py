@@ -27,10 +27,9 @@ N_POSITIONS = 4
 N_ROTATIONS = 0
 ROTATIONS = 8      # first rotation among the local coordinates
 CONSTANTS = (
-    Part("f1", (), "factor of the way 1"),
+    Part("ratio", (), "first coordinate over the second"),
     Part("e1", (2,), "axis of the way, in axes of its first body"),
     Part("start1", (), "way at the start [length]"),
-    Part("f2", (), "factor of the way 2"),
     Part("e2", (2,), "axis of the way, in axes of its first body"),
     Part("start2", (), "way at the start [length]"),
 )
@@ -44,8 +43,8 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (49, 0, 0, 0),
-              "column": (83, 0, 0, 0)}
+OPERATIONS = {"residual": (50, 0, 0, 0),
+              "column": (86, 0, 0, 0)}
 
 
 @kernel_function
@@ -57,14 +56,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         unknowns = at(nodes, N_ROTATIONS)
         constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
-        f1 = constant[0]
+        ratio = constant[0]
         e1_x = constant[1]
         e1_y = constant[2]
         start1 = constant[3]
-        f2 = constant[4]
-        e2_x = constant[5]
-        e2_y = constant[6]
-        start2 = constant[7]
+        e2_x = constant[4]
+        e2_y = constant[5]
+        start2 = constant[6]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -99,28 +97,27 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Ac_z = a[unknowns[9]]
         lam_1 = q[unknowns[10]]
         t0 = Ra_cos*e1_x - Ra_sin*e1_y
-        t1 = f1*lam_1
-        t2 = Ra_cos*e1_y + Ra_sin*e1_x
-        t3 = -t2
-        t4 = Rc_cos*e2_x - Rc_sin*e2_y
-        t5 = f2*lam_1
-        t6 = Rc_cos*e2_y + Rc_sin*e2_x
-        t7 = -t6
-        t8 = -xa_y + xb_y
-        t9 = -xa_x + xb_x
-        t10 = -xc_y + xd_y
-        t11 = -xc_x + xd_x
-        g[0] = -t0*t1
-        g[1] = t1*t3
-        g[2] = t0*t1
-        g[3] = t1*t2
-        g[4] = -t4*t5
-        g[5] = t5*t7
-        g[6] = t4*t5
-        g[7] = t5*t6
-        g[8] = t1*(t0*t8 + t3*t9)
-        g[9] = t5*(t10*t4 + t11*t7)
-        g[10] = f1*(-start1 + t0*t9 + t2*t8) + f2*(-start2 + t10*t6 + t11*t4)
+        t1 = Ra_cos*e1_y + Ra_sin*e1_x
+        t2 = -t1
+        t3 = Rc_cos*e2_x - Rc_sin*e2_y
+        t4 = lam_1*ratio
+        t5 = Rc_cos*e2_y + Rc_sin*e2_x
+        t6 = -t5
+        t7 = -xa_y + xb_y
+        t8 = -xa_x + xb_x
+        t9 = -xc_y + xd_y
+        t10 = -xc_x + xd_x
+        g[0] = -lam_1*t0
+        g[1] = lam_1*t2
+        g[2] = lam_1*t0
+        g[3] = lam_1*t1
+        g[4] = t3*t4
+        g[5] = -t4*t6
+        g[6] = -t3*t4
+        g[7] = -t4*t5
+        g[8] = lam_1*(t0*t7 + t2*t8)
+        g[9] = -t4*(t10*t6 + t3*t9)
+        g[10] = -ratio*(-start2 + t10*t3 + t5*t9) - start1 + t0*t8 + t1*t7
         if task == VELOCITY:
             t900 = Ra_cos*e1_y
             t901 = Ra_sin*e1_x
@@ -130,10 +127,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t905 = Rc_sin*e2_x
             t906 = Rc_cos*e2_x
             t907 = Rc_sin*e2_y
-            g[10] = (f1*((t900 + t901)*(-va_y + vb_y) + (t902 - t903)*(-va_x + vb_x) + (-xa_x +
-                xb_x)*(-Oma_z*t900 - Oma_z*t901) + (-xa_y + xb_y)*(Oma_z*t902 - Oma_z*t903)) +
-                f2*((t904 + t905)*(-vc_y + vd_y) + (t906 - t907)*(-vc_x + vd_x) + (-xc_x +
-                xd_x)*(-Omc_z*t904 - Omc_z*t905) + (-xc_y + xd_y)*(Omc_z*t906 - Omc_z*t907)))
+            g[10] = (-ratio*((t904 + t905)*(-vc_y + vd_y) + (t906 - t907)*(-vc_x + vd_x) + (-xc_x
+                + xd_x)*(-Omc_z*t904 - Omc_z*t905) + (-xc_y + xd_y)*(Omc_z*t906 - Omc_z*t907)) +
+                (t900 + t901)*(-va_y + vb_y) + (t902 - t903)*(-va_x + vb_x) + (-xa_x +
+                xb_x)*(-Oma_z*t900 - Oma_z*t901) + (-xa_y + xb_y)*(Oma_z*t902 - Oma_z*t903))
         if task == ACCELERATION:
             t900 = Ra_cos*e1_y
             t901 = Ra_sin*e1_x
@@ -145,14 +142,14 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t907 = Rc_cos*e2_x
             t908 = Rc_sin*e2_y
             t909 = Omc_z*Omc_z
-            g[10] = (f1*((-aa_x + ab_x)*(t902 - t903) + (-aa_y + ab_y)*(t900 + t901) + 2*(-va_x +
-                vb_x)*(-Oma_z*t900 - Oma_z*t901) + 2*(-va_y + vb_y)*(Oma_z*t902 - Oma_z*t903) +
-                (-xa_x + xb_x)*(-Aa_z*t900 - Aa_z*t901 + Ra_sin*e1_y*t904 - t902*t904) + (-xa_y +
-                xb_y)*(Aa_z*Ra_cos*e1_x - Aa_z*t903 - t900*t904 - t901*t904)) + f2*((-ac_x +
-                ad_x)*(t907 - t908) + (-ac_y + ad_y)*(t905 + t906) + 2*(-vc_x + vd_x)*(-Omc_z*t905
-                - Omc_z*t906) + 2*(-vc_y + vd_y)*(Omc_z*t907 - Omc_z*t908) + (-xc_x +
-                xd_x)*(-Ac_z*t905 - Ac_z*t906 + Rc_sin*e2_y*t909 - t907*t909) + (-xc_y +
-                xd_y)*(Ac_z*Rc_cos*e2_x - Ac_z*t908 - t905*t909 - t906*t909)))
+            g[10] = (-ratio*((-ac_x + ad_x)*(t907 - t908) + (-ac_y + ad_y)*(t905 + t906) +
+                2*(-vc_x + vd_x)*(-Omc_z*t905 - Omc_z*t906) + 2*(-vc_y + vd_y)*(Omc_z*t907 -
+                Omc_z*t908) + (-xc_x + xd_x)*(-Ac_z*t905 - Ac_z*t906 + Rc_sin*e2_y*t909 -
+                t907*t909) + (-xc_y + xd_y)*(Ac_z*Rc_cos*e2_x - Ac_z*t908 - t905*t909 -
+                t906*t909)) + (-aa_x + ab_x)*(t902 - t903) + (-aa_y + ab_y)*(t900 + t901) +
+                2*(-va_x + vb_x)*(-Oma_z*t900 - Oma_z*t901) + 2*(-va_y + vb_y)*(Oma_z*t902 -
+                Oma_z*t903) + (-xa_x + xb_x)*(-Aa_z*t900 - Aa_z*t901 + Ra_sin*e1_y*t904 -
+                t902*t904) + (-xa_y + xb_y)*(Aa_z*Ra_cos*e1_x - Aa_z*t903 - t900*t904 - t901*t904))
         if task == TANGENT:
             c_stiffness = coefficients[C_STIFFNESS]
             c_constraint = coefficients[C_CONSTRAINT]
@@ -172,64 +169,62 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 dxd_y = dq[7]
                 dtha_z = dq[8]
                 dthc_z = dq[9]
-                t12 = Ra_cos*e1_y
-                t13 = Ra_sin*e1_x
-                t14 = dtha_z*t12 + dtha_z*t13
-                t15 = c_stiffness*lam_1
-                t16 = f1*t15
-                t17 = Ra_cos*e1_x
-                t18 = -Ra_sin*dtha_z*e1_y + dtha_z*t17
-                t19 = -t18
-                t20 = -t14
-                t21 = Rc_cos*e2_y
-                t22 = Rc_sin*e2_x
-                t23 = dthc_z*t21 + dthc_z*t22
-                t24 = f2*t15
-                t25 = Rc_cos*e2_x
-                t26 = -Rc_sin*dthc_z*e2_y + dthc_z*t25
-                t27 = -t26
-                t28 = -t23
-                t29 = -dxa_y + dxb_y
-                t30 = -Ra_sin*e1_y + t17
-                t31 = -dxa_x + dxb_x
-                t32 = t12 + t13
-                t33 = -xa_x + xb_x
-                t34 = -xa_y + xb_y
-                t35 = -dxc_y + dxd_y
-                t36 = -Rc_sin*e2_y + t25
-                t37 = -dxc_x + dxd_x
-                t38 = t21 + t22
-                t39 = -xc_x + xd_x
-                t40 = -xc_y + xd_y
-                J[column] = t14*t16
-                J[11 + column] = t16*t19
-                J[22 + column] = t16*t20
-                J[33 + column] = t16*t18
-                J[44 + column] = t23*t24
-                J[55 + column] = t24*t27
-                J[66 + column] = t24*t28
-                J[77 + column] = t24*t26
-                J[88 + column] = t16*(t19*t33 + t20*t34 + t29*t30 - t31*t32)
-                J[99 + column] = t24*(t27*t39 + t28*t40 + t35*t36 - t37*t38)
-                J[110 + column] = (c_constraint*(f1*(t18*t34 + t20*t33 + t29*t32 + t30*t31) +
-                    f2*(t26*t40 + t28*t39 + t35*t38 + t36*t37)))
+                t11 = Ra_cos*e1_y
+                t12 = Ra_sin*e1_x
+                t13 = dtha_z*t11 + dtha_z*t12
+                t14 = c_stiffness*lam_1
+                t15 = Ra_cos*e1_x
+                t16 = -Ra_sin*dtha_z*e1_y + dtha_z*t15
+                t17 = -t16
+                t18 = -t13
+                t19 = Rc_cos*e2_y
+                t20 = Rc_sin*e2_x
+                t21 = dthc_z*t19 + dthc_z*t20
+                t22 = ratio*t14
+                t23 = Rc_cos*e2_x
+                t24 = -Rc_sin*dthc_z*e2_y + dthc_z*t23
+                t25 = -t24
+                t26 = -t21
+                t27 = -dxa_y + dxb_y
+                t28 = -Ra_sin*e1_y + t15
+                t29 = -dxa_x + dxb_x
+                t30 = t11 + t12
+                t31 = -xa_x + xb_x
+                t32 = -xa_y + xb_y
+                t33 = -dxc_y + dxd_y
+                t34 = -Rc_sin*e2_y + t23
+                t35 = -dxc_x + dxd_x
+                t36 = t19 + t20
+                t37 = -xc_x + xd_x
+                t38 = -xc_y + xd_y
+                J[column] = t13*t14
+                J[11 + column] = t14*t17
+                J[22 + column] = t14*t18
+                J[33 + column] = t14*t16
+                J[44 + column] = -t21*t22
+                J[55 + column] = -t22*t25
+                J[66 + column] = -t22*t26
+                J[77 + column] = -t22*t24
+                J[88 + column] = t14*(t17*t31 + t18*t32 + t27*t28 - t29*t30)
+                J[99 + column] = -t22*(t25*t37 + t26*t38 + t33*t34 - t35*t36)
+                J[110 + column] = (c_constraint*(-ratio*(t24*t38 + t26*t37 + t33*t36 + t34*t35) +
+                    t16*t32 + t18*t31 + t27*t30 + t28*t29))
             t700 = Ra_cos*e1_x - Ra_sin*e1_y
-            t701 = c_constraint*f1
-            t702 = Ra_cos*e1_y + Ra_sin*e1_x
-            t703 = -t702
-            t704 = Rc_cos*e2_x - Rc_sin*e2_y
-            t705 = c_constraint*f2
-            t706 = Rc_cos*e2_y + Rc_sin*e2_x
-            t707 = -t706
-            J[10] = -t700*t701
-            J[21] = t701*t703
-            J[32] = t700*t701
-            J[43] = t701*t702
-            J[54] = -t704*t705
-            J[65] = t705*t707
-            J[76] = t704*t705
-            J[87] = t705*t706
-            J[98] = t701*(t700*(-xa_y + xb_y) + t703*(-xa_x + xb_x))
-            J[109] = t705*(t704*(-xc_y + xd_y) + t707*(-xc_x + xd_x))
+            t701 = Ra_cos*e1_y + Ra_sin*e1_x
+            t702 = -t701
+            t703 = Rc_cos*e2_x - Rc_sin*e2_y
+            t704 = c_constraint*ratio
+            t705 = Rc_cos*e2_y + Rc_sin*e2_x
+            t706 = -t705
+            J[10] = -c_constraint*t700
+            J[21] = c_constraint*t702
+            J[32] = c_constraint*t700
+            J[43] = c_constraint*t701
+            J[54] = t703*t704
+            J[65] = -t704*t706
+            J[76] = -t703*t704
+            J[87] = -t704*t705
+            J[98] = c_constraint*(t700*(-xa_y + xb_y) + t702*(-xa_x + xb_x))
+            J[109] = -t704*(t703*(-xc_y + xd_y) + t706*(-xc_x + xd_x))
             J[120] = 0.0
     return OK

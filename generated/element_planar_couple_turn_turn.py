@@ -24,8 +24,7 @@ N_POSITIONS = 0
 N_ROTATIONS = 0
 ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = (
-    Part("f1", (), "factor of the angle 1"),
-    Part("f2", (), "factor of the angle 2"),
+    Part("ratio", (), "first coordinate over the second"),
 )
 MULTIPLIERS = 1
 VECTOR = False        # the equations are components of one vector
@@ -37,8 +36,8 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (9, 0, 0, 0),
-              "column": (6, 0, 0, 0)}
+OPERATIONS = {"residual": (7, 0, 0, 0),
+              "column": (5, 0, 0, 0)}
 
 
 @kernel_function
@@ -50,8 +49,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         unknowns = at(nodes, N_ROTATIONS)
         constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
-        f1 = constant[0]
-        f2 = constant[1]
+        ratio = constant[0]
         tha = q[unknowns[0]]
         Oma_z = v[unknowns[0]]
         Aa_z = a[unknowns[0]]
@@ -65,17 +63,16 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         Omd_z = v[unknowns[3]]
         Ad_z = a[unknowns[3]]
         lam_1 = q[unknowns[4]]
-        t0 = f1*lam_1
-        t1 = f2*lam_1
-        g[0] = t0
-        g[1] = -t0
-        g[2] = t1
-        g[3] = -t1
-        g[4] = f1*(tha - thb) + f2*(thc - thd)
+        t0 = lam_1*ratio
+        g[0] = lam_1
+        g[1] = -lam_1
+        g[2] = -t0
+        g[3] = t0
+        g[4] = -ratio*(thc - thd) + tha - thb
         if task == VELOCITY:
-            g[4] = f1*(Oma_z - Omb_z) + f2*(Omc_z - Omd_z)
+            g[4] = Oma_z - Omb_z - ratio*(Omc_z - Omd_z)
         if task == ACCELERATION:
-            g[4] = f1*(Aa_z - Ab_z) + f2*(Ac_z - Ad_z)
+            g[4] = Aa_z - Ab_z - ratio*(Ac_z - Ad_z)
         if task == TANGENT:
             c_constraint = coefficients[C_CONSTRAINT]
             J = at(matrices, element*WIDTH*WIDTH)
@@ -92,12 +89,11 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 J[5 + column] = 0.0
                 J[10 + column] = 0.0
                 J[15 + column] = 0.0
-                J[20 + column] = c_constraint*(f1*(dtha_z - dthb_z) + f2*(dthc_z - dthd_z))
-            t700 = c_constraint*f1
-            t701 = c_constraint*f2
-            J[4] = t700
-            J[9] = -t700
-            J[14] = t701
-            J[19] = -t701
+                J[20 + column] = c_constraint*(dtha_z - dthb_z - ratio*(dthc_z - dthd_z))
+            t700 = c_constraint*ratio
+            J[4] = c_constraint
+            J[9] = -c_constraint
+            J[14] = -t700
+            J[19] = t700
             J[24] = 0.0
     return OK

@@ -1,7 +1,7 @@
 """Couplings without elasticity: a ratio of two coordinates of joints, angles or ways.
 
-``phi = f_1 c_1 + f_2 c_2 = 0``, with one of the factors 1: gears are two angles, a rack and a
-pinion an angle and a way, a screw the angle and the way of one cylindrical joint, pulleys two ways.
+``phi = c_1 - ratio c_2 = 0``: gears are two angles, a rack and a pinion a way and an angle, a screw
+the way and the angle of one cylindrical joint, pulleys two ways.
 """
 
 import sympy as sp
@@ -18,36 +18,37 @@ from sebody.derive.formulas.elements import (
     position,
     rotation,
 )
+from sebody.derive.formulas.frictions import turn_vectors
 
 TURN, SLIDE = "turn", "slide"
-PAIRS = (TURN, TURN), (TURN, SLIDE), (SLIDE, SLIDE)
+PAIRS = (TURN, TURN), (SLIDE, TURN), (SLIDE, SLIDE)
 MEANINGS = {TURN: "angle", SLIDE: "way"}
 
 
 def couple(first: str, second: str, planar: bool) -> Element:
     """Derive the coupling of two coordinates; angles count turns from step to step."""
-    space, places, turns = Space(planar), [], []
-    constants: list[Constant] = []
+    space = Space(planar)
+    ratio = constant(space, "ratio", "scalar", "first coordinate over the second")
+    places: list[Block] = []
+    turns: list[Block] = []
+    constants, values = [ratio], []
     memory: list[tuple[str, sp.Expr]] = []
-    phi = sp.S.Zero
     for k, (what, names) in enumerate(((first, "ab"), (second, "cd")), 1):
-        factor = constant(space, f"f{k}", "scalar", f"factor of the {MEANINGS[what]} {k}")
-        constants.append(factor)
         if what == TURN:
             blocks = [rotation(space, name) for name in names]
-            turns += blocks
             value, own = _angle(space, blocks, k)
-            if not planar:
-                memory.append((f"angle_{k}", value))
+            turns += blocks
+            memory += [] if planar else [(f"angle_{k}", value)]
         else:
             ends, carrier = [position(space, name) for name in names], rotation(space, names[0])
-            places, turns = places + ends, [*turns, carrier]
             value, own = _way(space, ends, carrier, k)
+            places, turns = places + ends, [*turns, carrier]
         constants += own
-        phi += factor.symbols[0] * value
+        values.append(value)
     return element("planar_" * planar + f"couple_{first}_{second}",
                    f"{MEANINGS[first]} and {MEANINGS[second]} of two joints in a ratio", space,
-                   (*places, *turns), constants, constraints=[phi], memory=memory)
+                   (*places, *turns), constants, memory=memory,
+                   constraints=[values[0] - ratio.symbols[0] * values[1]])
 
 
 def _angle(space: Space, blocks: list[Block], k: int) -> tuple[sp.Expr, list[Constant]]:
@@ -55,11 +56,10 @@ def _angle(space: Space, blocks: list[Block], k: int) -> tuple[sp.Expr, list[Con
     a, b = blocks
     if space.planar:
         return a.angle - b.angle, []
-    n = constant(space, f"n{k}", "vector", "direction normal to the axis of the angle, body a")
-    m = constant(space, f"m{k}", "vector", "direction normal to both, body b")
-    seen = b.state.symbols.T * a.state.symbols * n.symbols
-    measured = sp.atan2(m.symbols.dot(seen), n.symbols.dot(seen))
-    return near_angle(measured, kept(f"angle_{k}")), [n, m]
+    vectors = turn_vectors(space, str(k))
+    d, n, m = (one.symbols for one in vectors)
+    seen = b.state.symbols.T * a.state.symbols * d
+    return near_angle(sp.atan2(m.dot(seen), n.dot(seen)), kept(f"angle_{k}")), vectors
 
 
 def _way(space: Space, ends: list[Block], carrier: Block, k: int

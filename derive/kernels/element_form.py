@@ -27,6 +27,7 @@ from sebody.derive.formulas import arrays
 from sebody.derive.formulas.elements import AMPLITUDE, Block, Element, Stage, kept, whole_turns
 from sebody.derive.kernels.arguments import ARGUMENTS
 from sebody.derive.kernels.bodies import MATRIX, port
+from sebody.derive.passes.unused import without_unused
 
 SUMS = {"kinetic": ("KINETIC", 0), "strain": ("STRAIN", 0), "potential": ("POTENTIAL", 0),
         "P_x": ("MOMENTUM", 0), "P_y": ("MOMENTUM", 1), "P_z": ("MOMENTUM", 2),
@@ -121,7 +122,7 @@ def _task(name: str, expressions: Sequence[sp.Expr], targets: Sequence[Target],
     if not expressions:
         return []
     body, _ = stored(expressions, targets, OF_TASKS, change)
-    return [If(compared(counts.task, "==", agreed(name)), tuple(body))]
+    return [If(compared(counts.task, "==", agreed(name)), without_unused(body))]
 
 
 def _tasks(element: Element) -> list[If]:

@@ -21,7 +21,7 @@ def memory_map(model: Mechanism, ports: Mapping[Element | Superelement, int],
                angles: Mapping[Element, int]) -> MemoryMap:
     """Number what is stored; `ports` are those of loads, `angles` those that laws keep."""
     memories, first = {}, 9 * len(frame_numbers(model))
-    for one in (*model.loads, *(c for c in model.constraints if c.path is not None)):
+    for one in (*model.loads, *model.constraints):
         if count := angles.get(one, len(element_kernel(one.kind).MEMORY)):
             memories[one] = list(range(first, first + count))
             first += count

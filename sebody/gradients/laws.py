@@ -10,6 +10,7 @@ next. So in a model with another value of a parameter, laws have the forces that
 give for the change of constants, and of motion that follows the parameter.
 """
 
+from collections.abc import Iterable
 from types import ModuleType
 
 import numpy as np
@@ -38,7 +39,7 @@ from sebody.model.parts import Element
 from sebody.runs.simulation import Simulation
 
 EQUAL = 1e-9                # of coefficients that are the same
-COUNTED = ("angle",)        # what torsion springs keep to count turns, no force depends on it else
+COUNTED = "angle"           # what is kept to count turns, no force depends on it else
 # of a law: where its scratch memory begins, and its numbers in `State.frames`; how many it keeps,
 # and which of all laws' numbers is its first; increments of rotations it reads, and where the first
 # of these is among `System.g_unknown`; number of its constants, and the first of them; its first
@@ -49,7 +50,11 @@ COUNTED = ("angle",)        # what torsion springs keep to count turns, no force
 
 def keeps(kind: str) -> bool:
     """Tell whether forces of a kind of element depend on numbers that it keeps."""
-    return element_kernel(kind).MEMORY not in ((), COUNTED)
+    return _are_of_a_law(element_kernel(kind).MEMORY)
+
+
+def _are_of_a_law(memory: Iterable[str]) -> bool:
+    return not all(name.startswith(COUNTED) for name in memory)
 
 
 def remembering(run: Simulation) -> list[Element]:
@@ -90,7 +95,7 @@ def places_of(system: System, modules: list[ModuleType | None], at_work: NDArray
     for b, module in enumerate(modules):
         memory = getattr(module, "MEMORY", ())
         for k in range(int(system.count[b])):
-            if module is not None and memory not in ((), COUNTED):
+            if module is not None and _are_of_a_law(memory):
                 width, turns = int(system.width[b]), 3 * module.N_ROTATIONS
                 index = int(system.at_index[b]) + k * int(system.stride[b])
                 force = int(system.at_g[b]) + k * width

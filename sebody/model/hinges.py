@@ -12,7 +12,7 @@ from sebody.basics.tabular import vector
 from sebody.model.arguments import along, dof_block, known, turning_axes
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
-from sebody.model.parts import SLIDES, TURNS, DofBlock, Element, Joint, Node
+from sebody.model.parts import COUPLING, SLIDES, TURNS, DofBlock, Element, Joint, Node
 
 HINGES = (*TURNS, "planar")     # joints whose nodes turn about one axis against each other
 RIGID = ("weld", "prismatic")   # and those whose nodes do not turn
@@ -178,7 +178,7 @@ def _between(model: Mechanism, kind: str) -> dict[frozenset, list[Joint]]:
     """Joints that always act, by what they are between."""
     found: dict[frozenset, list[Joint]] = {}
     for joint in model.joints:
-        if joint.kind not in ("drive", "distance", "path") and (
+        if joint.kind not in ("drive", "distance", "path", COUPLING) and (
                 joint.name not in model.switches) and all(
                 getattr(node, kind) is not None for node in (joint.node, joint.to)):
             found.setdefault(_key(joint.node, joint.to, kind), []).append(joint)

@@ -378,6 +378,7 @@ class Way(NamedTuple):
 
 TURNS = ("revolute", "cylindrical")                 # joints with an angle
 SLIDES = ("prismatic", "slider", "cylindrical")     # joints with a way
+COUPLING = "coupling"                               # an equation between two of these coordinates
 
 
 @dataclass(eq=False, repr=False)

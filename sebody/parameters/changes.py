@@ -11,7 +11,7 @@ from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.model.model import Model
-from sebody.model.parts import DofBlock, Element, Joint, Node, Superelement
+from sebody.model.parts import COUPLING, DofBlock, Element, Joint, Node, Superelement
 from sebody.model.variants.copying import exchange
 from sebody.reduction.body import ReducedBody
 from sebody.reduction.scaling import scaled
@@ -156,6 +156,9 @@ def angular_velocity(model: Model, node: Node, name: str) -> Handle:
 def joint_position(model: Model, joint: Joint, name: str) -> Handle:
     """Where a joint with the ground holds its node."""
     fixed, own = joint.to.position, joint.node.position
+    if joint.kind == COUPLING:
+        raise InputError(f"{name}: {joint.name!r} is a coupling, which holds no position: vary "
+                         f"{joint.name}.ratio")
     if joint.to not in model.grounds or fixed is None:
         raise InputError(f"{name}: joint {joint.name!r} is not to the ground, so its position "
                          "follows from its bodies: vary positions of nodes, or build the model "

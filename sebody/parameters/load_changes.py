@@ -13,7 +13,7 @@ from sebody.model.histories import time_function
 from sebody.model.history_rows import rows_of
 from sebody.model.impacts import LEAST, SLOW, damping_of, restitution_of
 from sebody.model.model import Model
-from sebody.model.parts import DofBlock, Element, Joint, Motion
+from sebody.model.parts import COUPLING, DofBlock, Element, Joint, Motion
 from sebody.model.time_functions import TimeFunction
 from sebody.parameters.changes import LOADS, MOTION, Handle, attribute_of, constants_of
 
@@ -103,6 +103,15 @@ def backlash(model: Model, gear: Element, name: str) -> Handle:
         raise InputError(f"{name}: {gear.name!r} is no gear")
     return constants_of(gear, lambda play: {"lower": -play / 2, "upper": play / 2}, LOADS,
                       np.array(2.0 * float(gear.constants["upper"])), least=0.0)
+
+
+def coupling_ratio(model: Model, joint: Joint, name: str) -> Handle:
+    """Handle of the ratio of a coupling: of its first coordinate to the second."""
+    if joint.kind != COUPLING:
+        raise InputError(f"{name}: {joint.name!r} is a {joint.kind}, which has no ratio")
+    equation = joint.constraints[0]
+    return constants_of(equation, lambda value: {"ratio": value}, MOTION,
+                        np.array(equation.number("ratio")))
 
 
 def load_table(model: Model, load: Element, name: str) -> Handle:

@@ -10,6 +10,7 @@ parameter of several numbers ``<parameter>.x`` or ``<parameter>.2`` is one, as `
 ``<node>.angular_velocity``
 ``<joint>.position``        of a joint with the ground: where it holds its node [length]; a node
                             whose position is unknown begins there by its own parameter
+``<coupling>.ratio``        of its first coordinate to the second [rad, length]
 ``<body>.stiffness``        factor, of a superelement's stiffness and of its geometric stiffness
 ``<body>.mass``             factor, of a superelement or rigid body with its inertia
 ``<body>.damping``          factor, of a superelement that has damping
@@ -138,7 +139,7 @@ KINDS = (
     Kind("rigid body", lambda model: model.rigid_bodies, {"mass": changes.rigid_mass}),
     Kind("drive", _drives, {"amplitude": load_changes.drive_amplitude}),
     Kind("joint", lambda model: {j.name: j for j in model.joints}, {
-        "position": changes.joint_position}),
+        "position": changes.joint_position, "ratio": load_changes.coupling_ratio}),
     Kind("spring", _springs, {quantity: load_changes.spring_constant(quantity)
                               for quantity in load_changes.OF_SPRINGS}),
     Kind("contact, stop or friction", _contacts, {

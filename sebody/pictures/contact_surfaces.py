@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from sebody.model.body_points import start_place, surface_touched
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Node, positions, rotations
+from sebody.model.parts import COUPLING, Element, Node, positions, rotations
 from sebody.pictures.contact_shapes import (
     Shape,
     across_of,
@@ -24,7 +24,7 @@ from sebody.pictures.contact_shapes import (
     tube,
 )
 from sebody.pictures.drawn_nodes import DrawnNode
-from sebody.pictures.gear_wheels import belt, gearing, wheel
+from sebody.pictures.gear_wheels import PARALLEL, belt, gearing, pinion, thread, wheel
 from sebody.pictures.surface import spatial
 
 AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
@@ -39,7 +39,8 @@ class ContactSurface(NamedTuple):
     """A surface that is touched, a ball that touches one, the limits of a stop, or a wheel."""
 
     name: str               # of the contact, stop or gear
-    kind: str               # plane, sphere, cylinder, ball, limits, pointer, gear, belt
+    kind: str               # plane, sphere, cylinder, ball, limits, pointer, gear, rack,
+                            # thread, belt
     node: str | None        # that carries it; None on the ground
     shape: Shape            # from this node, in axes that turn with it; on the ground in space
 
@@ -55,14 +56,15 @@ def contact_lines(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float)
 
 def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
                      ) -> list[ContactSurface]:
-    """Surfaces, balls, limits and wheels of contacts, stops and gears whose `nodes` are drawn.
+    """Surfaces, balls, limits and wheels of contacts, stops, gears and couplings of drawn `nodes`.
 
     Contacts with the same plane share a patch, and those of the same ball this ball.
     """
     surfaces: list[ContactSurface] = []
     planes: dict[tuple, list[tuple[Element, NDArray]]] = {}
     balls: dict[tuple[str, float], str] = {}
-    for one in model.loads:
+    for one in (*model.loads, *(c for joint in model.joints if joint.kind == COUPLING
+                                for c in joint.constraints)):
         arm = None
         if one.point is not None:
             one, arm = _as_of_node(one)
@@ -246,19 +248,14 @@ def _distance(model: Mechanism, one: Element, size: float) -> list[ContactSurfac
 
 def _gears(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
     """The pitch circles of two wheels, each on the shaft that turns in its bearing."""
-    shafts, axes = [], []
-    for k in (0, 1):
-        a, b = (held.node for held in one.attachments[2 * k:2 * k + 2])
-        axis = Z if model.planar else np.cross(one.vector(f"n{k + 1}"), one.vector(f"m{k + 1}"))
-        shafts.append(b if _on_ground(model, a) else a)
-        axes.append(-axis if _on_ground(model, a) else axis)    # angles are those of the first
+    found = [_shaft(model, one, k) for k in (1, 2)]
+    shafts, axes = [node for node, _ in found], [axis for _, axis in found]
     made = gearing(np.array([spatial(node.point) for node in shafts]), np.array(axes),
                    one.number("ratio"), size)
     surfaces = []
     for k, node in enumerate(shafts):
         shape = wheel(made.wheels[k], made.wheels[1 - k])
-        surfaces.append(ContactSurface(one.name, "gear", _carrier(model, node), shape._replace(
-            points=shape.points - (0.0 if _on_ground(model, node) else spatial(node.point)))))
+        surfaces.append(_placed(model, one, "gear", node, shape))
     bearings = {_carrier(model, held.node) for held in one.attachments} - {
         surface.node for surface in surfaces}
     if made.belt and bearings == {None}:
@@ -266,5 +263,33 @@ def _gears(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
     return surfaces
 
 
+def _shaft(model: Mechanism, one: Element, k: int) -> tuple[Node, NDArray]:
+    """The node that turns by the k-th coordinate, an angle, and the axis of this angle."""
+    turns = [held.node for held in one.attachments if held.kind == "rotation"]
+    a, b = turns[:2] if k == 1 else turns[-2:]
+    axis = Z if model.planar else np.cross(one.vector(f"n{k}"), one.vector(f"m{k}"))
+    return (b, -axis) if _on_ground(model, a) else (a, axis)    # angles are those of the first
+
+
+def _rack(model: Mechanism, one: Element, size: float) -> list[ContactSurface]:
+    """A pinion and its rack, each on its own node; the thread of a screw."""
+    (shaft, axis), lead = _shaft(model, one, 2), one.number("ratio")
+    carrier, other = (held.node for held in one.attachments[:2])
+    body, way = (carrier, -spatial(one.vector("e1"))) if _on_ground(model, other) else (
+        other, spatial(one.vector("e1")))
+    centre = spatial(shaft.point)
+    if np.linalg.norm(np.cross(way, axis)) < PARALLEL:
+        return [_placed(model, one, "thread", shaft,
+                        thread(centre, axis, lead * np.sign(way @ axis), size))]
+    wheel_of, rack = pinion(centre, axis, way, lead)
+    return [_placed(model, one, "gear", shaft, wheel_of), _placed(model, one, "rack", body, rack)]
+
+
+def _placed(model: Mechanism, one: Element, kind: str, node: Node, shape: Shape) -> ContactSurface:
+    """A shape in space, carried by a node."""
+    return ContactSurface(one.name, kind, _carrier(model, node), shape._replace(
+        points=shape.points - (0.0 if _on_ground(model, node) else spatial(node.point))))
+
+
 LIMITS = {"turn_stop": _angle, "slide_stop": _way, "distance_stop": _distance,
-          "gear_play": _gears}
+          "gear_play": _gears, "couple_turn_turn": _gears, "couple_slide_turn": _rack}

@@ -1,4 +1,4 @@
-"""Pitch circles that stand for a pair of gears: wheels that roll on each other, or with a belt."""
+"""Pitch circles of gears, which roll on each other or have a belt; racks, and threads of screws."""
 
 from typing import NamedTuple
 
@@ -14,6 +14,9 @@ PULLEYS = 0.5           # sum of the radii of pulleys, likewise
 ALONE = 0.1             # largest radius where no place of the axes gives one, of the extent
 PITCH, MOST = 8, 160    # teeth of the smaller wheel, most that are drawn of one
 TOOTH = 0.08            # length of a tooth, of the smaller radius
+RACK = 1.5 * np.pi      # half the length of a rack, of the radius of its pinion
+THREAD = 0.02, 0.12     # radius and length of a thread, of the extent
+TURNS = 16              # most that are drawn of a thread
 
 
 class Wheel(NamedTuple):
@@ -85,6 +88,31 @@ def belt(one: Wheel, other: Wheel) -> Shape:
     sine = np.sqrt(1.0 - cosine**2)
     return joined([line(one.centre + one.radius * way, other.centre + other.radius * way)
                    for way in (cosine * u + sine * v, cosine * u - sine * v)])
+
+
+def pinion(centre: NDArray, axis: NDArray, way: NDArray, radius: float) -> tuple[Shape, Shape]:
+    """A pinion, and a rack that it moves by ``radius x angle`` along a way across its axis."""
+    arm = np.cross(way, axis) * np.sign(radius)
+    arm, size = arm / np.linalg.norm(arm), abs(radius)
+    own = Wheel(centre, axis, size, arm)
+    middle, half = centre + size * arm, RACK * size * way
+    pitch = 2.0 * np.pi * size / PITCH
+    count = int(RACK * size / pitch)
+    teeth = [line(middle + k * pitch * way, middle + k * pitch * way + TOOTH * size * arm)
+             for k in range(-count, count + 1)]
+    return wheel(own, own), joined([line(middle - half, middle + half), *teeth])
+
+
+def thread(centre: NDArray, axis: NDArray, lead: float, size: float) -> Shape:
+    """A helix about an axis that advances by the lead in a radian."""
+    radius, length = (part * size for part in THREAD)
+    count = min(max(1.0, length / (2.0 * np.pi * abs(lead))), TURNS)
+    angle = np.linspace(-np.pi * count, np.pi * count, int(24 * count) + 1)
+    u, v = across_of(axis)
+    points = centre + radius * (np.outer(np.cos(angle), u) + np.outer(np.sin(angle), v)) \
+        + np.outer(lead * angle, axis)
+    places = np.arange(len(points) - 1)
+    return Shape(points, np.column_stack([places, places + 1]), np.zeros((0, 3), dtype=int))
 
 
 def _parallel(points: NDArray, e: NDArray, f: NDArray, ratio: float, size: float) -> Gearing:

@@ -1,7 +1,7 @@
 """Formulas of forces, moments and powers of bodies, joints, drives and loads."""
 
 from sebody.basics.errors import InputError
-from sebody.model.parts import Element, Joint, Motion, Node, Superelement
+from sebody.model.parts import COUPLING, Element, Joint, Motion, Node, Superelement
 from sebody.quantities.algebra import back, dot, scaled
 from sebody.quantities.balance import balance
 from sebody.quantities.expressions import Number
@@ -95,6 +95,29 @@ def effort(of: Numbers, name: str, what: str) -> Number:
     first = of.numbering.dof_blocks[dof_block]
     return dot([of.total(first + k) for k in range(dof_block.start.size)],
                drive.direction.tolist())
+
+
+def couplings(of: Parts) -> dict[str, Joint]:
+    """Couplings of joints without elasticity, by name."""
+    return {name: joint for name, joint in joints(of).items() if joint.kind == COUPLING}
+
+
+def coupled(coupling: Joint) -> str:
+    """Kind of the first coordinate of a coupling: position or rotation."""
+    return coupling.constraints[0].attachments[0].kind
+
+
+def on_first(of: Numbers, name: str, what: str) -> Number:
+    """Thrust or torque on the first coordinate of a coupling: times its rate it is the power.
+
+    Its equation has this coordinate with the factor 1.
+    """
+    kind = "rotation" if what == "torque" else "position"
+    coupling = couplings(of)[name]
+    if kind != coupled(coupling):
+        other = "thrust" if what == "torque" else "torque"
+        raise InputError(f"coupling {name!r} is of a {coupled(coupling)}: ask for {name}.{other}")
+    return -of.multiplier(of.numbering.multipliers[coupling.constraints[0]])
 
 
 def _first(of: Parts, load: Element) -> Node:

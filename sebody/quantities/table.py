@@ -17,9 +17,9 @@ from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
 
 FE_NODE = "node inside a body"
-OPTIONAL = PRESSING, SLIDING, SIGNAL, CONTROLLER, OUTPUT = (    # told of models that have some
-    "contact, stop or friction", "joint on a path", "sensor, signal or actuator", "controller",
-    "output of a body")
+OPTIONAL = PRESSING, SLIDING, COUPLED, SIGNAL, CONTROLLER, OUTPUT = (   # told where there are some
+    "contact, stop or friction", "joint on a path", "coupling", "sensor, signal or actuator",
+    "controller", "output of a body")
 
 
 def _always(of: Parts, owner: str) -> bool:
@@ -80,6 +80,10 @@ def _has_equations(of: Parts, name: str) -> bool:
 
 def _drives(kind: str, of: Parts, name: str) -> bool:
     return forces.driven(forces.drives(of)[name]) == kind
+
+
+def _couples(kind: str, of: Parts, name: str) -> bool:
+    return forces.coupled(forces.couplings(of)[name]) == kind
 
 
 def _acts_on(kind: str, of: Parts, name: str) -> bool:
@@ -183,12 +187,17 @@ PATH_JOINT = {
     "normal_force": Quantity(paths.normal_force),
     "power": Quantity(paths.power, "force length/time"),
 }
-DRIVE = {
-    "torque": Quantity(partial(_with, forces.effort, "torque"), "force length",
-                       partial(_drives, "rotation")),
-    "thrust": Quantity(partial(_with, forces.effort, "thrust"), "force",
-                       partial(_drives, "position")),
-}
+
+
+def _effort(formula: Callable[..., Any], has: Callable[..., bool]) -> dict[str, Quantity]:
+    """A torque about, or a thrust along an axis."""
+    return {name: Quantity(partial(_with, formula, name), unit, partial(has, kind))
+            for name, kind, unit in (("torque", "rotation", "force length"),
+                                     ("thrust", "position", "force"))}
+
+
+DRIVE = _effort(forces.effort, _drives)
+COUPLING = _effort(forces.on_first, _couples)
 CONTACT = {
     "normal_force": Quantity(contacts.normal_force, has=partial(_presses, "normal_force")),
     "gap": Quantity(contacts.gap, has=partial(_presses, "gap")),
@@ -207,6 +216,7 @@ OWNERS = (
     Owner(SLIDING, "of joints on paths {quantities}", paths.sliding, PATH_JOINT),
     Owner("joint", "of joints {quantities}", motion.joints, JOINT),
     Owner("drive", "of drives {quantities}", forces.drives, DRIVE),
+    Owner(COUPLED, "of couplings {quantities}", forces.couplings, COUPLING),
     Owner("spring or load", "of springs and loads {quantities}", forces.loads,
           _pair(forces.of_load, _acts_on)),
     Owner(PRESSING, "of contacts, stops and friction {quantities}", contacts.pressing, CONTACT),

@@ -19,11 +19,11 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.model.arguments import dof_block
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import DofBlock, Node, Superelement
+from sebody.model.parts import COUPLING, DofBlock, Node, Superelement
 from sebody.results.recording import Recording
 
 APART = "distance", "path"              # joints whose nodes are not at one place
-NO_SUPPORT = "drive", *APART            # joints that hold no place of a body
+NO_SUPPORT = "drive", COUPLING, *APART  # joints that hold no place of a body
 FRAME = "frame"         # in place of the name of a node: the floating frame of the body
 
 

@@ -4,7 +4,8 @@ Rotations, and positions off the line, are tied to each other where they belong 
 rigid link, share a block (welds, joints) or where an element resists that one of them turns alone:
 its matrix at the start, times the velocities of this turning, is not zero. Positions on the line
 tie nothing. A tied group turns freely unless something fixed is in it; drives hold nothing, since
-they make things turn. Gears tie groups that turn about other lines, at the speed of their ratio.
+they make things turn. Gears and couplings tie groups that turn about other lines, at the speed of
+their ratio.
 """
 
 from __future__ import annotations
@@ -268,4 +269,4 @@ def _touching(run: Simulation) -> Iterator[_Touching]:
 
 
 def _is_gear(element: Element) -> bool:
-    return element.kind.endswith("gear_play")
+    return element.kind.endswith(("gear_play", "couple_turn_turn"))

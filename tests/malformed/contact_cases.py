@@ -1,10 +1,21 @@
 """Wrong arguments of friction, stops, gears and contacts."""
 
-from malformed.cases import NAN, NO_FLAG, NO_NUMBER, Right, are, have, not_negative, positive
+from malformed.cases import (
+    NAN,
+    NO_FLAG,
+    NO_NAME,
+    NO_NUMBER,
+    Right,
+    are,
+    have,
+    not_negative,
+    positive,
+)
 
 from sebody import Model, plane
 
 FRICTION, STOP, GEAR = "friction in 'pin'", "stop of 'pin'", "gear of 'pin' and 'axle'"
+COUPLING = "coupling of pin.angle and axle.angle"
 CONTACT = "contact of 'd'"
 NO_JOINT = [("far", "element 'far' is unknown: the model has"),
             *have("give a joint of the model or its name", None, 3, NAN)]
@@ -54,6 +65,29 @@ CASES = {
             "ratio": are(f"{GEAR}: ratio", *NO_NUMBER),
             "backlash": not_negative(f"{GEAR}: backlash"),
             **impact(GEAR)}),
+    "couple": Right(Model.couple, {"first": "pin", "second": "axle", "ratio": -2.0}, {
+        "first": [*NO_JOINT, ("axle.angle", f"{COUPLING}: give two coordinates".replace(
+            "pin", "axle")), ("sleeve", "'sleeve' turns and slides: give 'sleeve.angle' or"),
+            ("pin.displacement", "'pin' is a revolute, which has no displacement: give "
+             "'pin.angle'")],
+        "second": [*NO_JOINT, ("pin.", "element 'pin.' is unknown: did you mean 'pin'?")],
+        "ratio": [*are(f"{COUPLING}: ratio", *NO_NUMBER), (0, f"{COUPLING}: ratio is 0: give the "
+                                                           "first coordinate for one of the")],
+        "name": unless_none(are(f"name of the {COUPLING}", *NO_NAME))}),
+    "couple slides": Right(Model.couple, {
+        "first": "sleeve.displacement", "second": "guide", "ratio": -2.0}, {
+            "first": NO_JOINT}),
+    "screw": Right(Model.screw, {"joint": "sleeve", "pitch": 0.1}, {
+        "joint": [*NO_JOINT, ("guide", "screw: 'guide' is a prismatic: give a cylindrical joint")],
+        "pitch": [*are("screw in sleeve: pitch", *NO_NUMBER),
+                  (0, "screw in sleeve: pitch is 0: give the way of one turn")]}),
+    "rack": Right(Model.rack, {"rack": "guide", "pinion": "axle", "radius": 0.1}, {
+        "rack": [*NO_JOINT, ("pin", "rack: 'pin' is a revolute, which has no displacement: give a "
+                             "prismatic, slider, cylindrical")],
+        "pinion": [*NO_JOINT, ("guide", "pinion: 'guide' is a prismatic, which has no angle: give "
+                               "a revolute, cylindrical")],
+        "radius": [*are("rack guide on axle: radius", *NO_NUMBER),
+                   (0, "radius is 0: give that of the pinion")]}),
     "contact": Right(Model.contact, {
         "node": "d", "on": plane((0.0, 1.0, 0.0), (0.0, -9.0, 0.0)), "radius": 0.1,
         "stiffness": 1e4}, {

@@ -35,7 +35,7 @@ HELD = grounded_body(np.eye(7), np.eye(7), [POINTS["b"]], modes=1)
 
 
 def spatial() -> Model:
-    """Four full nodes, one without and one with nothing but a rotation; bodies and two hinges."""
+    """Four full nodes, one without and one with nothing but a rotation; bodies, hinges, slides."""
     model = Model()
     for name, point in POINTS.items():
         model.node(name, point)
@@ -48,6 +48,10 @@ def spatial() -> Model:
         model.node(name, (x, 0.0, 0.0))
         model.rigid_body(f"disc on {name}", name, 1.0, (1.0, 1.0, 1.0))
         model.revolute(name, Z, name=joint)
+    for name, joint, build in (("r", "sleeve", model.cylindrical), ("s", "guide", model.prismatic)):
+        model.node(name, (7.0, 0.0, 0.0))
+        model.rigid_body(f"cart on {name}", name, 1.0, (1.0, 1.0, 1.0))
+        build(name, X, name=joint)
     return model
 
 

@@ -173,7 +173,8 @@ def test_a_shaft_in_one_body_with_modes_is_axisymmetric():
     assert_allclose(omega[0], omega[1], rtol=2e-3)
 
 
-def test_gears_turn_the_second_shaft():
+@pytest.mark.parametrize("elastic", [True, False])
+def test_gears_turn_the_second_shaft(elastic):
     """A disc geared to the first turns at its own speed: its tilts have that gyroscopic moment."""
     model = Model()
     first, second = model.node("first", (0, 0, 0)), model.node("second", 0.4 * TURNED[:, 1])
@@ -187,7 +188,10 @@ def test_gears_turn_the_second_shaft():
     model.bushing(wheel, to=second, stiffness=1e6, turning_stiffness=1e3)
     model.bushing(frame, to=wheel, turning_stiffness=(0.0, 500.0, 700.0), rotation=TURNED)
     ratio, speed = -2.5, 200.0
-    model.gear(*joints, ratio, stiffness=1e5)
+    if elastic:
+        model.gear(*joints, ratio, stiffness=1e5)
+    else:
+        model.couple(*joints, ratio)
     found = at_speed(model, speed)
     assert found.frame == "standing"
     M, G = 1e-3 * np.eye(2), 2e-3 * speed / ratio * np.array([[0.0, 1.0], [-1.0, 0.0]])

@@ -128,6 +128,8 @@ def _take(run: Simulation, held: Result, interfaces: Interfaces) -> None:
         for old_one, one in zip(old_joint.constraints, joint.constraints, strict=True):
             at, was = after.multipliers[one], before.multipliers[old_one]
             state.q[at:at + one.multipliers] = q[was:was + one.multipliers]
+            if one in after.memories:
+                state.frames[after.memories[one]] = frames[before.memories[old_one]]
     for old_load, load in _matched(held.model.loads, run.model.loads):
         if load in after.memories:
             state.frames[after.memories[load]] = frames[before.memories[old_load]]

@@ -32,21 +32,21 @@ def _axis(one: Element, number: str = "") -> np.ndarray:
     return np.cross(one.constants["n" + number], one.constants["m" + number])
 
 
-def _sign(flat: Flattening, one: Element, number: str = "") -> float:
+def sign_of_angle(flat: Flattening, one: Element, number: str = "") -> float:
     """Tell whether the angle counts as in the plane: 1, or -1 where it counts against it."""
     return float(np.sign(flat.axial(_axis(one, number), f"the axis of {one.name!r}")))
 
 
 def _turn(kind: str) -> Callable[[Flattening, Element], Made]:
     def made(flat: Flattening, one: Element) -> Made:
-        _sign(flat, one)
+        sign_of_angle(flat, one)
         return kind, _scalars(one)
     return made
 
 
 def _journal(flat: Flattening, one: Element) -> Made:
     """In the plane nothing presses along the normal."""
-    _sign(flat, one)
+    sign_of_angle(flat, one)
     kept = {name: value for name, value in _scalars(one).items() if name not in ("across", "along")}
     return "planar_friction_turn" + "_f2" * (one.number("across") > 0), kept
 
@@ -76,7 +76,7 @@ def _cylindrical(flat: Flattening, one: Element) -> Made:
 
 
 def _turn_stop(flat: Flattening, one: Element) -> Made:
-    return "planar_turn_stop", _limits(_scalars(one), _sign(flat, one))
+    return "planar_turn_stop", _limits(_scalars(one), sign_of_angle(flat, one))
 
 
 def _limits(c: dict[str, Any], sign: float) -> dict[str, Any]:
@@ -87,7 +87,7 @@ def _limits(c: dict[str, Any], sign: float) -> dict[str, Any]:
 
 
 def _gear(flat: Flattening, one: Element) -> Made:
-    first, second = (_sign(flat, one, k) for k in "12")
+    first, second = (sign_of_angle(flat, one, k) for k in "12")
     c = _limits(_scalars(one), first)
     return "planar_gear_play", c | {"ratio": c["ratio"] * first * second}
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Axes, Element, Joint, positions, rotations
-from sebody.model.variants.flat_contacts import LAWS, flat_places
+from sebody.model.variants.flat_contacts import LAWS, flat_places, sign_of_angle
 from sebody.model.variants.flattening import Flattening
 
 PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
@@ -169,11 +169,24 @@ def _slide_drive(flat: Flattening, joint: Joint, one: Element) -> Element:
                      {"e": e, "start": one.constants["start"]})
 
 
+def _coupling(flat: Flattening, joint: Joint, one: Element) -> Element:
+    constants: dict[str, float | NDArray] = {}
+    ratio = one.number("ratio")
+    for k in "12":
+        if "e" + k in one.constants:
+            constants |= {"e" + k: flat.vector(one.vector("e" + k), f"an axis of {one.name!r}"),
+                          "start" + k: one.number("start" + k)}
+        else:
+            ratio *= sign_of_angle(flat, one, k)
+    return _equation(flat, one, f"planar_{one.kind}", 1, constants | {"ratio": ratio})
+
+
 EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
     "coincident": _coincident, "coincident_ground": _coincident_ground, "parallel": _parallel,
     "parallel_ground": _parallel, "perpendicular": _perpendicular, "on_line": _on_line,
     "on_plane": _on_plane, "distance": _distance, "turn_drive": _turn_drive,
-    "slide_drive": _slide_drive}
+    "slide_drive": _slide_drive,
+    **{f"couple_{pair}": _coupling for pair in ("turn_turn", "slide_turn", "slide_slide")}}
 
 
 # rigid bodies, loads and springs

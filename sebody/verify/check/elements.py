@@ -85,7 +85,7 @@ def joint_velocity(case: Case) -> float:
 
 def joint_acceleration(case: Case) -> float:
     """``phi`` differentiated twice in time against differences along a path."""
-    h, weights = 0.02, (1.5, -0.15, 1.0 / 90.0)
+    h, weights = 0.005, (1.5, -0.15, 1.0 / 90.0)
     second = (-49.0 / 18.0 * _phi_later(case, 0.0) + sum(
         w * (_phi_later(case, k * h) + _phi_later(case, -k * h))
         for k, w in enumerate(weights, 1))) / h**2
