@@ -98,5 +98,7 @@ def with_residual_modes(component: ComponentModes, interior: ClampedInterior,
     residual = (unit @ (turn / np.sqrt(inverse)))[:, ::-1]
     omega_squared = 1.0 / inverse[::-1]
     residual = residual @ canonical_turn(omega_squared, residual)
+    # what vibration modes are off by is multiplied by the ratio of the squares of frequencies
+    residual -= shapes @ (shapes.T @ (mass @ residual))
     return replace(component, fixed_interface=np.hstack([shapes, residual]),
                    omega_squared=np.concatenate([squares, omega_squared]))

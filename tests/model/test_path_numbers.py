@@ -62,6 +62,39 @@ def test_the_joint_does_no_work_at_all():
     assert simulate(model, 2.5e-5, 0.05, scheme)["runs.way"][-1] == pytest.approx(way, abs=1e-7)
 
 
+def telescope(bodies):
+    """An inner beam slides in an outer one at two places, each of which is a node of the other."""
+    model, length, over = Model(planar=True), 2.0, 1.0
+    section = rectangle(0.02, 0.04, youngs_modulus=7e10, poisson_ratio=0.0, density=2700.0)
+    base, tip = model.node("base", (0.0, 0.0)), model.node("tip", (length, 0.0))
+    root = model.node("root", (length - over, 0.0))
+    end = model.node("end", (2 * length - over, 0.0))
+    for name, nodes in (("outer", (base, tip)), ("inner", (root, end))):
+        model.beam(name, nodes, section, elements=20, bodies=bodies, modes=4)
+        model.path(name, on=name)
+    model.revolute(base, name="hinge")
+    model.drive_angle("hinge", (lambda t: 2 * (t - np.sin(np.pi * t) / np.pi),
+                                lambda t: 2 * (1 - np.cos(np.pi * t)),
+                                lambda t: 2 * np.pi * np.sin(np.pi * t)))
+    model.spring(base, root, 150.0)
+    model.path_joint(root, "outer", name="root slides")
+    model.path_joint(tip, "inner", name="tip slides")
+    return model
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("bodies", [1, 4])
+def test_a_telescopic_boom_as_by_cable_elements(bodies):
+    """Those of `tests/data/sliding_on_cables.py`; forces are normal to the beams."""
+    result = simulate(telescope(bodies), 1e-3, 0.8)
+    assert result["root slides.way"][-1] == pytest.approx(1.660664, abs=1.5e-4)
+    assert result["tip slides.way"][-1] == pytest.approx(0.339335, abs=1.5e-4)
+    assert result["end.position"][-1] == pytest.approx((1.725450, 3.222000), abs=6e-4)
+    for name in ("root", "tip"):
+        force = result[f"{name} slides.local_force"]
+        assert np.abs(force[100:, 0]).max() < 1e-6 * np.abs(force).max()
+
+
 SPAN, GAUGE, PARTS, ROPES = 20.0, 3.0, 24, 5.0
 WHEEL, LOAD, DAMPING = 400.0, 5000.0, 2e-4
 START, WAY, DURATION, END, H = 4.0, 10.0, 6.0, 6.0, 1e-2

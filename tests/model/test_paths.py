@@ -87,6 +87,16 @@ def test_divisions_of_an_arm_agree(swung):
 
 
 @pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(("bodies", "modes"), [(1, 8), (4, 4)])
+def test_an_arm_with_a_pendulum_as_by_cable_elements(bodies, modes):
+    """Those of `tests/data/sliding_on_cables.py`, which differ by as much from finer ones."""
+    result = simulate(arm(bodies=bodies, modes=modes), 1e-3, 0.8)
+    assert result["runs.way"][-1] == pytest.approx(1.408815, abs=3e-5)
+    assert result["tip.position"][-1] == pytest.approx((1.052223, -1.699951), abs=3e-4)
+    assert result["bob.position"][-1] == pytest.approx((0.431255, -1.429534), abs=1e-4)
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_in_space_turned_shifted_and_in_other_units(swung):
     made = simulate(arm(modes=8, flat=False, turned=TURN, shift=SHIFT, scale=1000.0), 2e-3, 0.8)
     assert made["runs.way"] / 1000 == pytest.approx(swung["runs.way"], abs=5e-5)
