@@ -202,8 +202,9 @@ class Path:
     name: str
     pieces: tuple[PathPiece, ...]   # with straight ones on the ground at ends that have some
     blend: float            # length over which one body hands over to the next [length]
-    ends: tuple[str, str]   # refuse, straight or ground
+    ends: tuple[str, str]   # refuse, straight, ground or stop
     length: float           # along chords between knots, without the ground at its ends [length]
+    buffers: Mapping[str, float | NDArray]  # constants of the law of stops at its ends
 
     def __repr__(self) -> str:
         carriers = dict.fromkeys(piece.carrier.name for piece in self.pieces)

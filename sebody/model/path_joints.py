@@ -110,6 +110,12 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
         model.loads.append(Element(
             chosen_name(model, None, f"wheels of {name}"), "way_rotor",
             joint.constraints[0].attachments[-1:], {"inertia": wheels, "ratio": 1.0}))
+    if "stop" in on.ends:
+        low, high = (limit if end == "stop" else far for end, limit, far in zip(
+            on.ends, (0.0, on.length), (-np.inf, np.inf), strict=True))
+        model.loads.append(Element(
+            chosen_name(model, None, f"ends of {name}"), "way_stop",
+            joint.constraints[0].attachments[-1:], {**on.buffers, "lower": low, "upper": high}))
     return joint
 
 
@@ -172,7 +178,7 @@ def _start(model: Mechanism, what: str, a: Node, path: Path, start: float | None
     else:
         way = inputs.number(start, f"{what}: start")
         for end, beyond in zip(path.ends, (way < 0, way > path.length), strict=True):
-            if beyond and end == "refuse":
+            if beyond and end in ("refuse", "stop"):
                 raise InputError(f"{what}: start is {way:g}, beyond the ends of path "
                                  f"{path.name!r}, 0 and {path.length:g}: give a way between them, "
                                  "or make the path with ends='straight'")

@@ -37,7 +37,7 @@ def path_numbers(path: Path, k: int, forces: bool = False) -> NDArray:
     last = ((length - half, length + half) if k < len(path.pieces) - 1 else
             (NO_EDGE, NO_EDGE))
     margin = 0.0 if forces else MARGIN * path.length
-    held = ("refuse", "straight") if forces else ("refuse",)
+    held = ("refuse", "straight", "stop") if forces else ("refuse",)
     low = -margin if path.ends[0] in held else -NO_EDGE
     high = path.length + margin if path.ends[1] in held else NO_EDGE
     both = np.stack([rows.values, rows.slopes], axis=1)

@@ -15,6 +15,7 @@ from sebody.basics.spelling import unknown
 from sebody.model.arguments import dof_block, known
 from sebody.model.body_points import label_place
 from sebody.model.frames import FRAMES
+from sebody.model.impacts import impact_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import Node, Path, PathPiece, Superelement
@@ -22,14 +23,16 @@ from sebody.model.path_tables import curve
 from sebody.reduction.recovery import Recovery
 
 ON_AXIS = 1e-6      # of the distance of two nodes: FE nodes so near to the line between are on it
+EXPONENT = 1.5      # of stops at its ends
 MEET = 1e-6         # of the length of a path: its pieces meet
-ENDS = "refuse", "straight", "ground"
+ENDS = "refuse", "straight", "ground", "stop"
 
 
 def path(model: Mechanism, name: str,
          on: str | Superelement | Node | Sequence[str | Superelement] | None = None,
          nodes: str | Sequence | None = None, points: ArrayLike | None = None, blend: float = 0.0,
-         ends: str | tuple[str, str] = "refuse") -> Path:
+         ends: str | tuple[str, str] = "refuse", stiffness: float | None = None,
+         restitution: float = 0.5, at_speed: float = 1.0) -> Path:
     """A path along FE nodes of a body or of several ones, or a curve on a node or the ground.
 
     Between its nodes the path is a cubic spline of what the recovery of the body says of them, in
@@ -54,9 +57,12 @@ def path(model: Mechanism, name: str,
     blend : float
         Of several bodies: length over which one hands over to the next, with two continuous
         derivatives [length]; 0 where bodies are welded, at hinges the length that a rail bridges.
-    ends : {"refuse", "straight", "ground"} or two of these
+    ends : {"refuse", "straight", "ground", "stop"} or two of these
         What comes before and behind the path: a run stops there, the path goes straight on with
-        its body, or on the ground, as before and behind a bridge. Ways before it are negative.
+        its body, or on the ground, as before and behind a bridge, or a buffer keeps points on the
+        path. Ways before it are negative.
+    stiffness, restitution, at_speed : float
+        Of these buffers, see `Model.stop`: along each joint on the path.
 
     Returns
     -------
@@ -78,6 +84,7 @@ def path(model: Mechanism, name: str,
     if name in model.paths:
         raise InputError(f"{what}: there is a path of this name already: give another one")
     both = _ends(what, ends)
+    buffers = _buffers(what, both, stiffness, restitution, at_speed)
     carriers = _carriers(model, what, on)
     if carriers is None or isinstance(carriers, Node):
         if nodes is not None or points is None:
@@ -92,7 +99,7 @@ def path(model: Mechanism, name: str,
     starts = [0.0, *accumulate(float(piece.ways[-1]) for piece in pieces)]
     made = Path(name, tuple(piece._replace(offset=start) for piece, start in zip(
         pieces, starts, strict=False)), inputs.number(blend, f"{what}: blend", least=0), both,
-        starts[-1])
+        starts[-1], buffers)
     _check_joined(what, made)
     made = _with_ground(model, what, made)
     model.paths[name] = made
@@ -119,12 +126,23 @@ def known_path(model: Mechanism, path: Path | str, what: str) -> Path:
 
 
 def _ends(what: str, ends: object) -> tuple[str, str]:
+    remedy = "give 'refuse', 'straight', 'ground' or 'stop', or two of these"
     both = (ends, ends) if isinstance(ends, str) else tuple(
-        inputs.items(ends, f"{what}: ends", "give one of refuse, straight and ground, or two"))
+        inputs.items(ends, f"{what}: ends", remedy))
     if len(both) != 2 or not all(isinstance(one, str) and one in ENDS for one in both):
-        raise inputs.refusal(f"{what}: ends", ends, "give 'refuse', 'straight' or 'ground', or two "
-                             "of these: of the beginning and of the end")
+        raise inputs.refusal(f"{what}: ends", ends, f"{remedy}: of the beginning and of the end")
     return both[0], both[1]
+
+
+def _buffers(what: str, ends: tuple[str, str], stiffness: float | None, restitution: float,
+             at_speed: float) -> dict[str, float | NDArray]:
+    """Constants of the law of stops at the ends; none where there are no stops."""
+    if "stop" in ends:
+        return impact_constants(f"{what}: stop", restitution, at_speed, stiffness, EXPONENT)
+    if stiffness is not None:
+        raise InputError(f"{what} has no stop at its ends: leave stiffness= out, or give "
+                         "ends='stop'")
+    return {}
 
 
 def _carriers(model: Mechanism, what: str, on: object) -> Node | list[Superelement] | None:

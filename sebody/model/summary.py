@@ -122,12 +122,18 @@ def _state(first: dict[DofBlock, str], node: Node, dof_block: DofBlock | None) -
 
 
 def _joints(model: Mechanism) -> list[tuple]:
-    nodes = model.nodes
-    return [(joint.name, joint.kind, joint.node.name,
-             joint.to.name if nodes.get(joint.to.name) is joint.to else "the ground",
-             str(joint.multipliers) if joint.multipliers else
-             "none: its nodes share coordinates or are fixed")
-            for joint in model.joints]
+    nodes, rows = model.nodes, []
+    for joint in model.joints:
+        on = joint.constraints[0].path if joint.constraints else None
+        to = joint.to.name if nodes.get(joint.to.name) is joint.to else "the ground"
+        rows.append((joint.name, joint.kind, joint.node.name,
+                     to if on is None else on.path.name,
+                     str(joint.multipliers) if joint.multipliers else
+                     "none: its nodes share coordinates or are fixed"))
+        if on is not None and on.way is not None:
+            rows += [(motion.name, "drive of the way", joint.name, on.path.name,
+                      f"none: {motion.time_function.described()}") for motion in on.way.motions]
+    return rows
 
 
 def _paths(model: Mechanism) -> list[tuple]:

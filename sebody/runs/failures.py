@@ -65,7 +65,8 @@ def _beyond(model: Model, numbering: Numbering, state: State) -> str:
         s, rate = (float(row[numbering.dof_blocks[way]]) for row in (state.q_old, state.v_old))
         found += [(abs(s - end) / path.length, f"joint {joint.name!r} comes to the {word} of path "
                    f"{path.name!r}, whose length is {path.length:.6g}: its way is {s:.6g} and the "
-                   f"rate {rate:.3g}; give the path ends='straight', or hold the joint before")
+                   f"rate {rate:.3g}; give the path ends='straight' or 'stop', or hold the joint "
+                   "before")
                   for end, word, kind in zip((0.0, path.length), ("beginning", "end"), path.ends,
                                              strict=True) if kind == "refuse"]
     return min(found)[1]

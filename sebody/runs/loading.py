@@ -184,8 +184,11 @@ class Loading:
 
     def _rests(self, spin: Spin, target: float) -> bool:
         """Tell whether the structure settles, from where it is, in a stable state."""
-        return (settle(self.run, self.tolerance, spin, False, self._work)
-                and self._is_stable(target, linear(self.run, spin, None)[0]))
+        try:
+            return (settle(self.run, self.tolerance, spin, False, self._work)
+                    and self._is_stable(target, linear(self.run, spin, None)[0]))
+        except InputError:      # cannot be evaluated: a point is beyond the end of its path
+            return False
 
     def _leave(self, spin: Spin, target: float, tangent: csc_matrix) -> bool:
         """Leave an unstable state to one of its sides; True, as it is kept where neither rests."""

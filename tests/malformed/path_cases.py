@@ -86,9 +86,18 @@ CASES = {
                   ([0, 0, 2], f"{WHERE}: FE node 0 of 'beam' and FE node 0 of 'beam', which")],
         "points": have(f"{WHERE} is on a superelement: give nodes= of it", CURVE, 3, "abc", []),
         "blend": not_negative(f"{WHERE}: blend"),
-        "ends": [*are(f"{WHERE}: ends", 3, "stop", "", ("refuse",), ("refuse", "open"),
+        "ends": [*are(f"{WHERE}: ends", 3, "buffer", "", ("refuse",), ("refuse", "open"),
                       ("straight", None), ["refuse"] * 3),
-                 (None, "ends")]}),
+                 ("stop", f"{WHERE}: stop: give stiffness=, the force at a depth of one"),
+                 (None, "ends")],
+        "stiffness": [(1.0, f"{WHERE} has no stop at its ends: leave stiffness= out")]}),
+    "path with stops": Right(Model.path, {
+        "name": "new", "points": CURVE, "ends": "stop", "stiffness": 1e3, "restitution": 0.4,
+        "at_speed": 2.0}, {
+            "stiffness": [*are(f"{WHERE}: stop: stiffness", 0.0, -1.0, NAN, "1"),
+                          (None, f"{WHERE}: stop: give stiffness=")],
+            "restitution": have(f"{WHERE}: stop: restitution is", 0.0, 1.5, NAN, "1"),
+            "at_speed": have(f"{WHERE}: stop: at_speed is", 0.0, -1.0, NAN)}),
     "curve": Right(Model.path, {"name": "new", "on": "c", "points": CURVE}, {
         "points": [*are(f"{WHERE}: points", "abc", 3, [], [CURVE[0]], [(0.0, 1.0), (1.0, 2.0)],
                         [(0.0, NAN, 0.0), (1.0, 0.0, 0.0)], [(0.0, 0.0, INF), (1.0, 0.0, 0.0)],
