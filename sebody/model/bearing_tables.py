@@ -8,7 +8,6 @@ Journal on Scientific and Statistical Computing 5, 1984, p. 300).
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.basics.files.reading import existing, unreadable
+from sebody.basics.files.csv_files import csv_columns
 
 COEFFICIENTS = tuple(f"{kind}{i}{j}" for kind in "kc" for i in "xy" for j in "xy")
 SPEEDS = {"frequency": 1.0, "speed": 1.0, "omega": 1.0, "w": 1.0, "rpm": np.pi / 30.0}
@@ -46,7 +45,7 @@ class BearingTable(NamedTuple):
             speeds that do not ascend.
         """
         if isinstance(given, str | PathLike):
-            columns: Mapping[str, Any] = _read(Path(given), what)
+            columns: Mapping[str, Any] = csv_columns(Path(given), what)
         else:
             columns = inputs.mapping(given, what, "give columns by their names, "
                                      f"{', '.join(('frequency', *COEFFICIENTS))}, or a CSV file")
@@ -90,28 +89,3 @@ class BearingTable(NamedTuple):
         stiffness, damping = (PchipInterpolator(self.speeds, one)(np.clip(speed, first, last))
                               for one in (self.stiffness, self.damping))
         return stiffness, damping
-
-
-def _read(path: Path, what: str) -> dict[str, list[float]]:
-    """Columns of a CSV file with a line of names; commas, semicolons or tabs are between them."""
-    file = existing(path, f"{what}: file", "give the path of a CSV file")
-    try:
-        lines = [line for line in file.read_text(encoding="utf-8-sig").splitlines()
-                 if line.strip() and not line.lstrip().startswith("#")]
-    except (OSError, UnicodeDecodeError) as error:
-        if isinstance(error, OSError):
-            raise unreadable(path, f"{what}: file", error, "give a text file") from error
-        raise InputError(f"{what}: file {path} is no text: give a CSV file") from error
-    if not lines:
-        raise InputError(f"{what}: file {path} is empty: give a line of names and rows of numbers")
-    between = max(",;\t", key=lines[0].count)
-    names, *rows = csv.reader(lines, delimiter=between)
-    found: dict[str, list[float]] = {name: [] for name in names}
-    for row in rows:
-        try:
-            for name, value in zip(names, row, strict=True):
-                found[name].append(float(value))
-        except ValueError as error:
-            raise InputError(f"{what}: file {path} has the row {between.join(row)!r}, which has "
-                             f"no number for each of the {len(names)} columns") from error
-    return found

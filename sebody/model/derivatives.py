@@ -47,6 +47,39 @@ def rates_of(function: Callable[[float], float], what: str
                          "as rest_to_rest or piecewise") from error
 
 
+def integrals_of(function: Callable[[float], float], what: str
+                 ) -> tuple[Callable[[float], float], Callable[[float], float],
+                            Callable[[float], float]]:
+    """Second and first integral of a function of time, both zero at t = 0, and the function.
+
+    Raises
+    ------
+    InputError
+        SymPy cannot follow what the function does, or finds no integral in closed form; the
+        message begins with `what` it is.
+    """
+    import sympy  # takes 0.4 s
+    from sympy.integrals.manualintegrate import manualintegrate
+
+    t = sympy.Symbol("t", real=True)
+    found = [sympy.S.Zero] * 2
+    try:
+        value = sympy.sympify(_symbolic(getattr(function, "py_func", function))(t))
+        if not value.free_symbols <= {t}:
+            raise TypeError("it depends on more than the time")
+        last = value
+        for k in (1, 0):
+            whole = manualintegrate(sympy.expand(last), t)
+            found[k] = last = whole - whole.subs(t, 0)
+            if last.has(sympy.Integral) or not last.subs(t, 1).is_finite:
+                raise TypeError("it has no integral in closed form")
+        return tuple(sympy.lambdify(t, one, modules="math", cse=True) for one in (*found, value))
+    except Exception as error:      # whatever the user's function does with a symbol
+        name = getattr(function, "__name__", function)
+        raise InputError(f"{what} {name!r} cannot be integrated ({error}): give a table of its "
+                         "values, or a ready profile such as harmonic or piecewise") from error
+
+
 class _Symbols:
     """Replaces `math` or NumPy while a function is traced."""
 

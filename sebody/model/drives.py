@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from sebody.basics.errors import InputError
 from sebody.model import motions
+from sebody.model.accelerations import Acceleration, of_acceleration
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.hinges import about, check_axes, slide_of
 from sebody.model.histories import Source
@@ -97,9 +98,10 @@ def drive_slide(model: Mechanism, node: Joint | Node | str, motion: Source,
     return drive
 
 
-def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Source,
-         what: str = "position", name: str | None = None) -> Motion:
-    """Prescribe the motion of a node: no unknown, no equation.
+def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Source = None,
+         what: str = "position", name: str | None = None,
+         acceleration: Acceleration | None = None, drift: str | None = None) -> Motion:
+    """Prescribe the motion of a node, or its acceleration: no unknown, no equation.
 
     Parameters
     ----------
@@ -109,11 +111,22 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Sourc
     motion : table, function, tuple of three functions or ready profile
         Counted from where the node starts; see `drive_angle`.
     what : {'position', 'rotation'}
+    acceleration : table, path of a CSV file, function of time or ready profile
+        In place of `motion`: linear between rows (t, acceleration), zero before and behind them.
+        The node starts at rest.
+    drift : {'keep', 'remove'}, optional
+        What becomes of the speed and the way that a table of accelerations leaves behind its last
+        row: 'remove' takes a straight line from the accelerations, and tells it.
 
     Raises
     ------
     InputError
-        A rotation moved about two axes, or a dependent position at the end of a rigid link.
+        A rotation moved about two axes, a dependent position at the end of a rigid link, both or
+        none of motion and acceleration, or an acceleration that cannot be integrated.
+
+    Examples
+    --------
+    >>> model.move("ground floor", (9.81, 0, 0), acceleration="quake.csv", drift="remove")
     """
     node = known(model, node)
     if not isinstance(what, str) or what not in ("position", "rotation"):
@@ -129,7 +142,14 @@ def move(model: Mechanism, node: Node | str, direction: ArrayLike, motion: Sourc
     if not np.linalg.norm(way) > 0:
         raise InputError(f"motion of {moved.name} has the direction {way}: give one "
                          "that is not zero")
-    time_function = motions.motion(motion)
+    if (motion is None) == (acceleration is None):
+        raise InputError(f"motion of {moved.name}: give either motion= or acceleration=")
+    if acceleration is not None:
+        time_function = of_acceleration(acceleration, drift, f"acceleration of {moved.name}")
+    elif drift is not None:
+        raise InputError(f"motion of {moved.name}: drift= is that of an acceleration: leave it out")
+    else:
+        time_function = motions.motion(motion)
     count = len(moved.motions) + 1
     name = chosen_name(model, name, f"motion{f' {count}' * (count > 1)} of {moved.name}", ("node",))
     hold(model, node, what)

@@ -311,8 +311,16 @@ LOADS = {
         "node": nodes(foreign, lacks_place),
         "direction": [*vectors("motion of a.position", 3),
                       ((0.0, 0.0, 0.0), "motion of a.position has the direction")],
-        "motion": have("motion of a drive", None, "abc", [(0.0, NAN)], []),
+        "motion": [*have("motion of a drive", "abc", [(0.0, NAN)], []),
+                   (None, "motion of a.position: give either motion= or acceleration=")],
         "what": have("cannot move", "both", None, 3, [])}),
+    "move by accelerations": Right(Model.move, {
+        "node": "a", "direction": X, "acceleration": TABLE, "drift": "keep"}, {
+            "motion": [(TABLE, "motion of a.position: give either motion= or acceleration=")],
+            "acceleration": [
+                *have("acceleration of a.position", 3.0, [(0.0, NAN), (1.0, 2.0)], [], [1.0, 2.0],
+                      [(1.0, 0.0), (0.0, 0.0)], [(0.0, 1.0)], {}, "no/file.csv")],
+            "drift": have("acceleration of a.position: drift", "all", 3, True)}),
 }
 def _push(t, y, x, u, parameters):
     u[0] = -y[0]
