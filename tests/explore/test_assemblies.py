@@ -8,9 +8,9 @@ from sebody import Model, simulate
 from sebody.analysis import equilibrium, modes, vibrations
 from sebody.basics.errors import InputError
 from sebody.cli.entry import main
-from sebody.fem import circle
+from sebody.fem import circle, straight_beam
 from sebody.io import load_body, save_body
-from sebody.reduction import Accuracy, reduce_model
+from sebody.reduction import Accuracy, craig_bampton, reduce_model
 from sebody.scenes.bolted_arm import build
 
 LEG, ARM = circle(0.03, 2.1e11, 0.3, 7850.0), circle(0.02, 2.1e11, 0.3, 7850.0)
@@ -422,3 +422,37 @@ def test_a_scene_from_its_bodies_and_as_one(tmp_path, capsys):
     assert travel > 0.5 and np.abs(paths[1] - paths[0]).max() < 1e-3 * travel
     assert load_body(path).total_mass == pytest.approx(
         one.model.bodies["arm"].reduced.total_mass + 5.0)      # with the tool at its tip
+
+
+def test_paths_along_bodies_stay_on_the_whole(tmp_path):
+    """Paths of the model, over several bodies, and of reductions; a mass crosses all of it."""
+    def bridge(reduced):
+        model = Model()
+        ends = [model.node(name, (x, 0, 0)) for name, x in (("a", 0.0), ("m", 1.0), ("b", 2.0))]
+        fe = straight_beam((0, 0, 0), (1.0, 0, 0), ARM, 6)
+        body = craig_bampton(fe, [(0, "full"), (6, "full")], 2, paths={"axis": range(7)})
+        for name, k in (("first", 0), ("second", 1)):
+            model.superelement(name, body, ends[k:k + 2], stiffening=False)
+        model.path("deck", on=["first", "second"])
+        if reduced:
+            whole = reduce_model(model, ["a", "b"])
+            assert sorted(whole.paths) == ["deck", "first.axis", "second.axis"]
+            assert [len(nodes) for nodes in whole.paths.values()] == [13, 7, 7]
+            assert whole.recovery.coordinates[whole.paths["deck"]][:, 0] == pytest.approx(
+                np.arange(13) / 6)
+            model = Model()
+            ends = [model.node(name, point) for name, point in zip("ab", whole.coordinates,
+                                                                   strict=True)]
+            model.superelement("whole", load_body(save_body(whole, reduced)), ends,
+                               stiffening=False)
+            model.path("deck", on="whole", nodes="deck")
+        for end in (ends[0], ends[-1]):
+            model.fix(end)
+        mass = model.node("mass", (0, 0, 0), "translation")
+        model.point_mass("car", mass, 3.0)
+        model.force(mass, "-z", 3.0)
+        model.path_joint(mass, "deck", name="runs")
+        model.drive_way("runs", (lambda t: 2.0 * t, lambda t: 2.0, lambda t: 0.0))
+        return simulate(model, 2e-3, 0.9)["mass.position.z"]
+    exact, found = bridge(None), bridge(tmp_path / "whole.npz")
+    assert found == pytest.approx(exact, abs=2e-3 * np.abs(exact).max())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from typing import NamedTuple
@@ -14,6 +14,8 @@ from scipy.linalg import block_diag
 from sebody.explore.assemblies.placed_bodies import Placed
 from sebody.fem.beam_stress import BeamStress
 from sebody.fem.stress import SolidStress, StressModes
+from sebody.model.parts import Path, Superelement
+from sebody.model.paths import MEET
 from sebody.reduction.recovery import Recovery
 
 _DOFS = {2: ("x", "y", "rz"), 3: ("x", "y", "z", "rx", "ry", "rz")}
@@ -24,10 +26,11 @@ class Inside(NamedTuple):
 
     recovery: Recovery | None
     numbers: str
+    paths: Mapping[str, NDArray] = {}       # FE nodes of paths by name
 
 
 def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArray, NDArray]],
-              size: int) -> Inside:
+              size: int, paths: Iterable[Path]) -> Inside:
     """The FE nodes of all bodies, body after body, then nodes of the model, in the state.
 
     Stresses are the changes from this state.
@@ -38,6 +41,8 @@ def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArr
         Places of nodes by name, their motion and rotation by the coordinates of the assembly.
     size : int
         How many of these there are before load modes.
+    paths : iterable of Path
+        Of the model: those along its bodies stay, as do those that reductions of bodies were given.
     """
     known = [one for one in placed if one.body.recovery is not None]
     parts = [_part(one, size) for one in known]
@@ -50,16 +55,49 @@ def recovered(placed: Sequence[Placed], nodes: Mapping[str, tuple[NDArray, NDArr
     dofs = _DOFS[D] if any(len(one.node_dofs) > D for one in parts) else _DOFS[D][:D]
     coordinates = np.vstack([one.coordinates for one in parts])
     cells, stress, said, first = [], [], [], 0
+    begins: dict[str, int] = {}
     for one, name in zip_longest(parts, names):
         numbers = first + np.arange(len(one.coordinates))
         cells += [(kind, corners + first) for kind, corners in one.cells]
         stress += [_renumbered(own, numbers, coordinates, first) for own in one.stress]
         said += ([f"{name} {first} to {numbers[-1]}"] if name is not None else
                  [f"{node} {number}" for node, number in zip(nodes, numbers, strict=True)])
+        if name is not None:
+            begins[name] = first
         first += len(numbers)
     made = Recovery(np.vstack([_widened(one, len(dofs)) for one in parts]), coordinates, dofs,
                     cells=tuple(cells), outlines=_outlines(parts), stress=tuple(stress))
-    return Inside(made, f"FE nodes: {', '.join(said)}")
+    return Inside(made, f"FE nodes: {', '.join(said)}",
+                  _of_model(paths, begins, coordinates) | _of_bodies(known, begins))
+
+
+def _of_model(paths: Iterable[Path], begins: Mapping[str, int], coordinates: NDArray
+              ) -> dict[str, NDArray]:
+    """Nodes of the paths along bodies; where one hands over to the next, its last one is left out.
+    """
+    found = {}
+    for path in paths:
+        pieces = [piece for piece in path.pieces if isinstance(piece.carrier, Superelement)]
+        numbers = [begins[piece.carrier.name] + np.array(piece.places) for piece in pieces]
+        for k in range(len(numbers) - 1):
+            gap = coordinates[numbers[k][-1]] - coordinates[numbers[k + 1][0]]
+            if np.linalg.norm(gap) <= MEET * path.length:
+                numbers[k] = numbers[k][:-1]
+        if numbers:
+            found[path.name] = np.concatenate(numbers)
+    return found
+
+
+def _of_bodies(known: Sequence[Placed], begins: Mapping[str, int]) -> dict[str, NDArray]:
+    """Paths of reductions, by the names of their bodies, too, where several have the same name."""
+    names = [name for one in known for name in one.body.paths]
+    found = {}
+    for one in known:
+        assert one.body.recovery is not None
+        for name, nodes in one.body.paths.items():
+            found[name if names.count(name) == 1 else f"{one.name}.{name}"] = begins[
+                one.name] + np.array([one.body.recovery.place(int(node)) for node in nodes])
+    return found
 
 
 def _of_nodes(nodes: Mapping[str, tuple[NDArray, NDArray, NDArray]]) -> Recovery:

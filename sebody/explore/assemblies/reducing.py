@@ -62,8 +62,8 @@ def reduce_model(run_or_model: Simulation | Result | Model,
     -------
     ReducedBody
         In axes of space, with coordinates that are the places of the interfaces in the state. Its
-        loads are those of its bodies by name. Notes say what was left out, which of its FE nodes
-        are those of which body or node, and what contacts do.
+        loads are those of its bodies by name, its paths those along its bodies. Notes say what was
+        left out, which of its FE nodes are those of which body or node, and what contacts do.
 
     Raises
     ------
@@ -117,13 +117,14 @@ def _reduced(given: Given, wanted: Interfaces, modes: int | Accuracy | None) -> 
         whole, placed = stiffened.with_load_modes(stiffening)
     invariants = summed_invariants(placed, given.run.model.rigid_bodies.values(), motion, places,
                                    mass, points, wanted.keeps, stiffening)
-    inside = recovered(placed, _nodes_inside(given, wanted, motion, places), len(mass))
+    inside = recovered(placed, _nodes_inside(given, wanted, motion, places), len(mass),
+                       given.run.model.paths.values())
     return ReducedBody(
         stiffness, mass, points, wanted.keeps, kept.modes, damping if damping.any() else None,
         invariants, inside.recovery, _notes(given, wanted, kept, inside.numbers),
         _loads(placed, len(mass)), lacks,
         tuple(dict.fromkeys(m for one in placed for m in one.body.materials)),
-        given.run.model.units, preload=preload)
+        given.run.model.units, preload=preload, paths=inside.paths)
 
 
 def _congruent(matrix: NDArray, shapes: NDArray) -> NDArray:
