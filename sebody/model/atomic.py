@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from copy import copy
 from functools import wraps
-from inspect import Parameter, isfunction, signature
+from inspect import isfunction, signature
 from typing import ParamSpec, TypeVar, cast
 
 from sebody.basics.spelling import refuse_arguments
@@ -33,9 +33,7 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
     What it adds is taken out again; DOF blocks that exist are changed only when nothing more is
     checked.
     """
-    own = {name: one for name, one in signature(build).parameters.items()
-           if one.kind is not Parameter.VAR_KEYWORD}
-    acting = "acting" in signature(build).parameters
+    own = signature(build).parameters.keys()
 
     @wraps(build)
     def built(*args: Arguments.args, **named: Arguments.kwargs) -> Built:
@@ -44,9 +42,10 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
                 if isinstance(value, dict | list | set)}
         try:
             made = build(*args, **named)
-            if acting:
-                note(cast(Mechanism, model), cast(Element | Joint, made).name,
-                     {key: value for key, value in named.items() if key not in own})
+            if "acting" in own:
+                when = {key: value for key, value in named.items() if key not in own}
+                for one in made if isinstance(made, list | tuple) else (made,):
+                    note(cast(Mechanism, model), cast(Element | Joint, one).name, when)
             return made
         except BaseException as error:
             vars(model).update(kept)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.names import body_contact_kind
+from sebody.model.acting import Acting
 from sebody.model.arguments import (
     chosen_name,
     direction,
@@ -42,7 +45,8 @@ DEEP = 0.1          # of its radius, or of the model: a start in deeper contact 
 def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
          lower: float | None = None, upper: float | None = None, restitution: float = 0.5,
          at_speed: float = 1.0, stiffness: float | None = None, exponent: float = 1.5,
-         name: str | None = None) -> Element:
+         name: str | None = None,
+         **acting: Unpack[Acting]) -> Element:
     """Limits of the angle or way of a joint or drive, or of the distance of two nodes.
 
     Beyond a limit by d the stop pushes back with ``k d^n (1 + c d')`` (Hunt and Crossley), and
@@ -67,6 +71,8 @@ def stop(model: Mechanism, of: Joint | str | tuple[Node | str, Node | str],
         k: force / length^n, or moment / angle^n.
     exponent : float
         n, at least 1.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -114,7 +120,8 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
             stiffness: float | None = None, restitution: float = 0.5, at_speed: float = 1.0,
             exponent: float = 1.5, friction: float = 0.0, static: float | None = None,
             bristle: float | None = None, damping: float | None = None, speed: float = 0.0,
-            name: str | None = None) -> Element:
+            name: str | None = None,
+            **acting: Unpack[Acting]) -> Element:
     """Contact of a sphere about a node, or of the node itself, with a surface.
 
     Where it presses by d the force is ``k d^n (1 + c d')`` along the normal (see `stop`), and
@@ -138,6 +145,8 @@ def contact(model: Mechanism, node: Node | str, on: Surface, radius: float = 0.0
         Coefficients of sliding and of break-away.
     bristle, damping, speed : float
         See `friction`; they need a coefficient.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sebody.basics.errors import InputError
 from sebody.model import motions
 from sebody.model.accelerations import Acceleration, of_acceleration
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.hinges import about, check_axes, slide_of
 from sebody.model.histories import Source
@@ -28,7 +31,8 @@ from sebody.model.signs import warn_of_sign
 
 def drive_angle(model: Mechanism, node: Joint | Node | str, motion: Source,
                 axis: ArrayLike | None = None, to: Node | str | None = None,
-                name: str | None = None) -> Joint:
+                name: str | None = None,
+                **acting: Unpack[Acting]) -> Joint:
     """Prescribe the angle of `node` against `to` (the ground) about the axis they share.
 
     The joint itself is built separately. If nothing else acts on the rotation of `node` and there
@@ -44,6 +48,8 @@ def drive_angle(model: Mechanism, node: Joint | Node | str, motion: Source,
     motion : table, function, tuple of three functions or ready profile
         The angle, counted from where the nodes start: its value at t = 0 is taken off [rad]. A
         rate that it has at t = 0 is that of the start. See `sebody.model.motions.motion`.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -63,7 +69,8 @@ def drive_angle(model: Mechanism, node: Joint | Node | str, motion: Source,
 
 def drive_slide(model: Mechanism, node: Joint | Node | str, motion: Source,
                 axis: ArrayLike | None = None, to: Node | str | None = None,
-                name: str | None = None) -> Joint:
+                name: str | None = None,
+                **acting: Unpack[Acting]) -> Joint:
     """Prescribe the displacement of `node` against `to` (the ground) along an axis fixed in `node`.
 
     The axis is rigid, as that of a prismatic joint; use `drive_way` along a path of a flexible
@@ -79,6 +86,8 @@ def drive_slide(model: Mechanism, node: Joint | Node | str, motion: Source,
         The displacement, counted from where the nodes start [length]; see `drive_angle`.
     axis : (3,), planar (2,)
         With a node.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------

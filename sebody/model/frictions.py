@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name
 from sebody.model.joint_forces import give_forces, has_forces
 from sebody.model.mechanism import Mechanism
@@ -40,7 +41,8 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
              radius: float | None = None, preload: float = 0.0, arm: float | None = None,
              reaction: bool = True, bristle: float | None = None,
              damping: float | None = None, speed: float = 0.0, slip: float | None = None,
-             takes: str | None = None, name: str | None = None) -> Element | tuple[Element, ...]:
+             takes: str | None = None, name: str | None = None,
+             **acting: Unpack[Acting]) -> Element | tuple[Element, ...]:
     """Dry friction in a joint or drive: it sticks up to a limit, and slides against the motion.
 
     The limit is the coefficient times the normal force, times the radius where the joint turns. The
@@ -86,6 +88,8 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
     speed : float
         Reference speed of a smooth law without sticking (Brown and McPhee), for gradients
         [length/time] or [rad/time]; 0 for bristles. It takes nothing that is of bristles.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Returns
     -------

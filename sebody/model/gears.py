@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, known_joint
 from sebody.model.frictions import turning
 from sebody.model.impacts import impact_constants
@@ -15,7 +18,8 @@ from sebody.model.parts import Element, Joint, rotations
 
 def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float,
          backlash: float = 0.0, stiffness: float | None = None, restitution: float = 0.5,
-         at_speed: float = 1.0, exponent: float = 1.0, name: str | None = None) -> Element:
+         at_speed: float = 1.0, exponent: float = 1.0, name: str | None = None,
+         **acting: Unpack[Acting]) -> Element:
     """A pair of gears on two revolute joints: ``angle of first = ratio x angle of second``.
 
     The teeth are elastic: beyond half the backlash on either side the angle
@@ -35,6 +39,8 @@ def gear(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float
         the run's length follow.
     restitution, at_speed, exponent : float
         See `stop`.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------

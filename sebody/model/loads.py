@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from typing import Unpack
 
 from numpy.typing import ArrayLike
 
@@ -10,6 +11,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import offered, unknown
 from sebody.contract.names import body_load_kind
+from sebody.model.acting import Acting
 from sebody.model.arguments import (
     chosen_name,
     dof_block,
@@ -28,7 +30,8 @@ from sebody.model.time_functions import TimeFunction
 
 def force(model: Mechanism, node: Node | str, direction: ArrayLike,
           amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-          follower: bool = False, name: str | None = None) -> Element:
+          follower: bool = False, name: str | None = None,
+          **acting: Unpack[Acting]) -> Element:
     """Force on a node: `direction` times a number, a table, a function of time or a profile.
 
     Parameters
@@ -42,6 +45,8 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
         The direction turns with the node, and is one of space otherwise.
     name : str, optional
         By default ``force on <node>.position``.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Examples
     --------
@@ -63,7 +68,8 @@ def force(model: Mechanism, node: Node | str, direction: ArrayLike,
 
 def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
            amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-           follower: bool = False, name: str | None = None) -> Element:
+           follower: bool = False, name: str | None = None,
+           **acting: Unpack[Acting]) -> Element:
     """Torque on a node: `direction` times a number, a table, a function of time or a profile.
 
     Parameters
@@ -77,6 +83,8 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
         The direction turns with the node, and is one of space otherwise.
     name : str, optional
         By default ``torque on <node>.rotation``.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Examples
     --------
@@ -131,7 +139,8 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
 
 def body_load(model: Mechanism, body: str, load: str,
               amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-              name: str | None = None) -> Element:
+              name: str | None = None,
+              **acting: Unpack[Acting]) -> Element:
     """A load that was reduced with a superelement: pressure, traction, a force inside, times a
     time function.
 
@@ -146,6 +155,8 @@ def body_load(model: Mechanism, body: str, load: str,
         Name of one of its loads, see `ReducedBody.loads`.
     amplitude : float, (n, 2) array_like, callable or TimeFunction, optional
         Over time; 1 by default.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.names import path_load_kind
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, vector
 from sebody.model.frames import FRAMES
 from sebody.model.histories import time_function
@@ -22,7 +24,8 @@ from sebody.model.time_functions import TimeFunction
 def moving_force(model: Mechanism, path: Path | str, force: ArrayLike,
                  way: ArrayLike | Callable[[float], float] | TimeFunction,
                  spacing: ArrayLike = (0.0,), factors: ArrayLike | None = None,
-                 name: str | None = None) -> list[Element]:
+                 name: str | None = None,
+                 **acting: Unpack[Acting]) -> list[Element]:
     """A force that moves along a path of superelements, or a series of them: axles without mass.
 
     A mass that moves has inertia, which counts where it is heavy or fast: that is a node with
@@ -44,6 +47,8 @@ def moving_force(model: Mechanism, path: Path | str, force: ArrayLike,
     name : str, optional
         Of its results, ``<name>.work`` and ``<name>.power``: on the structure. By default
         ``force along <path>``; on each of several superelements it is followed by their names.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Returns
     -------

@@ -6,6 +6,7 @@ from typing import Any
 from sebody.basics.errors import InputError
 from sebody.model.acting import switch_of
 from sebody.model.mechanism import Mechanism
+from sebody.model.parts import Element
 
 
 def note(model: Mechanism, name: str, given: Mapping[str, Any]) -> None:
@@ -18,8 +19,9 @@ def note(model: Mechanism, name: str, given: Mapping[str, Any]) -> None:
     """
     if not given:
         return
-    model.switches[name] = switch_of(given, repr(name))
-    model.element(name)     # refuses a name that two have
+    made = model.element(name)     # refuses a name that two have
+    turns = isinstance(made, Element) and all(one.kind == "rotation" for one in made.attachments)
+    model.switches[name] = switch_of(given, repr(name), turns)
 
 
 def refuse_switches(model: Mechanism) -> None:
@@ -34,4 +36,4 @@ def refuse_switches(model: Mechanism) -> None:
         name, switch = next(iter(model.switches.items()))
         raise InputError(
             f"{name!r} acts {switch.words()}, which only simulate(model, h, t_end) follows: build "
-            "a model without until= and from_= for this, with the parts that act")
+            "a model without this for it, with the parts that act")

@@ -22,7 +22,6 @@ from sebody.runs.taken_over import (
     numbered,
     take_multipliers,
     take_states,
-    take_works,
 )
 
 SAME = 1e-6         # of an output interval: nearer times are one
@@ -41,13 +40,17 @@ def merged(model: Mechanism, system: System, numbering: Numbering, parts: list[R
     """
     state = allocate(model, system, numbering, h, not system.slot_unknowns.size)
     kept = list(_kept(parts, h))
-    rows, values = [], []
+    rows, values, done = [], [], np.zeros(len(numbering.port_names))
     for part, own in zip(parts, kept, strict=True):
         new = Side(model, numbering, np.tile(state.now, (len(own), 1)))
         old = Side(part.model, part.numbering, part.unique_rows[own])
         new.row[:, :RECORD_T + 2] = old.row[:, :RECORD_T + 2]
-        for take in (take_states, take_works, take_multipliers):
-            take(new, old)
+        take_states(new, old)
+        take_multipliers(new, old)
+        at, before = _ports(part, numbering)
+        new.part("works")[:] = done
+        new.part("works")[:, at] += old.part("works")[:, before]
+        done[at] += part.arrays_of_loop[1].works[before]    # in the state reached
         rows.append(new.row)
         values.append(_values(part, own, numbering, model, int(system.at_g[-1])))
     whole = Result(model, numbering, None, None, np.concatenate(rows),
@@ -79,9 +82,7 @@ def _values(part: Result, own: NDArray, numbering: Numbering, model: Mechanism, 
             ) -> tuple[NDArray, ...]:
     """Energies, powers, residuals of constraints and forces of a phase in the whole numbering."""
     counts = record_counts(numbering)
-    ports = dict(numbered(part.numbering.port_names))
-    pairs = [(k, ports[key]) for key, k in numbered(numbering.port_names) if key in ports]
-    at, before = np.array(pairs, dtype=int).reshape(-1, 2).T
+    at, before = _ports(part, numbering)
     energies = np.zeros((len(own), ENERGIES.size(counts)))
     energies[:, :POWERS] = part.energies[own, :POWERS]
     energies[:, POWERS + at] = part.energies[own][:, POWERS + before]
@@ -99,6 +100,13 @@ def _values(part: Result, own: NDArray, numbering: Numbering, model: Mechanism, 
             k, size = part.numbering.dof_blocks[block], block.start.size
             sums[:, first:first + size] = part.forces.sums[own, k:k + size]
     return energies, powers, part.constraint_residuals[own], elements, sums
+
+
+def _ports(part: Result, numbering: Numbering) -> NDArray:
+    """Power ports of the whole numbering that a phase has, and its own for them, (2, n)."""
+    ports = dict(numbered(part.numbering.port_names))
+    pairs = [(k, ports[key]) for key, k in numbered(numbering.port_names) if key in ports]
+    return np.array(pairs, dtype=int).reshape(-1, 2).T
 
 
 def _force_places(model: Mechanism, numbering: Numbering, total: int

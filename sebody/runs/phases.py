@@ -4,15 +4,16 @@ Where a phase begins, velocities are changed by the impulse that conserves momen
 starts from a state of another model; accelerations and multipliers are solved for anew.
 """
 
-from collections.abc import Callable
+import time as clock
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sebody.assembly.build import build
 from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.contract.layout import KINETIC, POTENTIAL, RECORD, STRAIN
-from sebody.engine.loop import advance
 from sebody.engine.state import CHUNK, DONE, FAILED, FINEST, Scheme
 from sebody.engine.step_control import NEAR
 from sebody.model.model import Model
@@ -25,9 +26,11 @@ from sebody.runs.initial_state import begin
 from sebody.runs.merged_phases import merged
 from sebody.runs.phase_models import acting, locked_as_now, phase_of, switch_times, whole
 from sebody.runs.schemes import fitting
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import LOOK, Simulation
 from sebody.runs.steps import last_step
-from sebody.runs.taken_over import Side, take_works, taken_over
+from sebody.runs.taken_over import taken_over
+from sebody.runs.threshold_search import Search
+from sebody.runs.thresholds import Threshold, thresholds_of
 from sebody.runs.tolerance import Tolerance
 from sebody.runs.variable_steps import begin_steps, natural_step
 
@@ -57,29 +60,57 @@ class Phase(Simulation):
         return Recording(self.model, self.numbering, self.system, self.state,
                          self.state.now[None].copy(), 0.0)
 
+    def read_now(self, name: str) -> float | NDArray:
+        """A quantity in the state reached, as `read`; sensors without samples measure it, too."""
+        sensor = self.model.sensors.get(name)
+        if sensor is None or sensor.period:
+            return self.read(name)
+        return self.sampling.measured(sensor) + sensor.bias
+
     def energy(self) -> float:
         """Kinetic, strain and potential energy in the state reached."""
         return float(self.now().energies[0, [KINETIC, STRAIN, POTENTIAL]].sum())
 
-    def run_until(self, t: float, progress: Callable[[float], None] | None) -> None:
-        """Advance to a time at which a step ends, on the grid or not."""
-        self._end_at(t)
+    def run_until(self, t: float, progress: Callable[[float], None] | None,
+                  thresholds: Sequence[Threshold] = ()) -> list[str]:
+        """Advance to a time at which a step ends, on the grid or not, or to a threshold.
+
+        With thresholds, steps are taken one by one.
+
+        Returns
+        -------
+        list of str
+            Names of what breaks or lets go in the state reached.
+        """
+        self.end_at(t)
         grid = int(np.floor(t / self.h + NEAR))
-        if grid > self.state.control.grid and grid * self.h > self.time:
+        if not thresholds and grid > self.state.control.grid and grid * self.h > self.time:
             self.run_to(grid * self.h, progress)
-        record = self.rows.record_until(grid + 1)
-        code = CHUNK
-        while self.time < t - NEAR * self.h and code not in (DONE, FAILED):
-            self.exchanges.serve()
-            self.sampling.serve()
-            code = advance(self.system, self.state, record, self.scheme, grid + 1, 1, self.dense)
-        self.rows.keep(record)
+        record, found, code = self.rows.record_until(grid + 1), [], CHUNK
+        search = Search(self, record, grid + 1, t, self.end_at, thresholds)
+        looked = clock.perf_counter()
+        try:
+            found = search.reached()
+            while self.time < t - NEAR * self.h and code not in (DONE, FAILED) and not found:
+                search.keep()
+                code = search.step()
+                found = search.found() if code != FAILED else []
+                if progress and clock.perf_counter() - looked > LOOK:
+                    looked = clock.perf_counter()
+                    progress(min(self.time / t, 1.0))
+        except KeyboardInterrupt:
+            self.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
+        finally:
+            self.rows.keep(record)
         self.watch.look(self.model, self.numbering, self.rows.stretches[-1])
+        if self.failure:
+            raise Interrupted(self.failure, self.result())
         if code == FAILED:
             self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
+        return found
 
-    def _end_at(self, t: float) -> None:
+    def end_at(self, t: float) -> None:
         """Let a step end at a time."""
         order = np.argsort(times := np.append(self._corners, t), kind="stable")
         self.system.corners[:] = times[order]
@@ -104,16 +135,13 @@ class Phase(Simulation):
     def _take_over(self, before: "Phase") -> None:
         """Take the state, the time and the place on the output grid over."""
         state, past = self.state, before.now()
-        old = Side(before.model, before.numbering, past.rows[-1])
         row, _ = taken_over(self.model, self.numbering, state.now, past)
-        take_works(Side(self.model, self.numbering, row), old)
         parts = RECORD.slices(record_counts(self.numbering))
         for block in self.numbering.rotations:
             row[parts["q"]][self.numbering.dof_blocks[block]:][:3] = 0.0    # R has it
         state.now[:] = row
         state.q_old[:], state.R_old[:], state.v_old[:] = state.q, state.R, state.v
         state.frames_old[:] = state.frames
-        state.works_old[:] = state.works
         if state.memory.shape == before.state.memory.shape:
             state.memory[:] = before.state.memory
         t = before.time
@@ -142,6 +170,7 @@ class Course:
         self._how = h, scheme, output_every, tolerance
         self._threads = threads
         self._locked: dict[str, Joint] = {}
+        self._broken: set[str] = set()      # what let go at a threshold
         self.events: list[Event] = []
         self._acting = acting(model, 0.0)
         self.phases = [Phase(phase_of(model, self._acting, {}), *self._how, start, threads)]
@@ -155,34 +184,47 @@ class Course:
             As of `Simulation.run_to`; what was computed is in the error's `result`. A part that
             locks does not fit the pose at that time.
         """
-        last_step(t_end, self.h, self.phases[-1].time, 0)       # refuses what is no time
+        last = last_step(t_end, self.h, self.phases[-1].time, 0)
+        end = last * self.h
         try:
-            for t in switch_times(self.model, t_end):
-                share = None if progress is None else lambda part, t=t: progress(part * t / t_end)
-                self.phases[-1].run_until(t, share)
-                self._switch()
-            self.phases[-1].run_to(t_end, progress)
+            while self.phases[-1].time < end - NEAR * self.h:
+                phase = self.phases[-1]
+                times = [t for t in switch_times(self.model, end)
+                         if t > phase.time + NEAR * self.h]
+                thresholds = thresholds_of(self.model, self._acting, phase.read_now)
+                if not times and not thresholds:
+                    phase.run_to(t_end, progress)
+                    break
+                t = min([*times, end])
+                share = None if progress is None else lambda part, t=t: progress(part * t / end)
+                broken = phase.run_until(t, share, thresholds)
+                self._broken |= set(broken)
+                if broken or times:
+                    self._switch(phase.time + NEAR * self.h if broken else t, broken)
         except (SimulationError, Interrupted) as error:
             raise type(error)(str(error), self.result()) from error
         return self
 
-    def _switch(self) -> None:
-        """Begin the next phase."""
+    def _switch(self, t: float, broken: Sequence[str]) -> None:
+        """Begin the next phase with what acts from a time on."""
         before = self.phases[-1]
-        acts = acting(self.model, before.time)
-        gone, come = self._acting - acts, acts - self._acting
+        acts = acting(self.model, t) - self._broken
+        gone, come = self._acting - acts - set(broken), acts - self._acting
+        breaking = {name for name in broken if self.model.switches[name].breaks}
         now = before.now()
         self._locked |= {joint.name: locked_as_now(joint, now) for joint in self.model.joints
                          if joint.name in come}
         model = phase_of(self.model, acts, self._locked)
-        words = ([f"{', '.join(sorted(gone))} let go"] if gone else []) + (
-            [f"{', '.join(sorted(come))} locked"] if come else [])
+        words = [f"{', '.join(sorted(names))} {did}" for names, did in (
+            (breaking, "broke"), (gone | set(broken) - breaking, "let go"), (come, "locked"))
+            if names]
         try:
             phase = Phase(model, *self._how, None, self._threads, before)
         except InputError as error:
             raise SimulationError(f"{' and '.join(words)} at t = {before.time:.6g}, but {error}",
                                   self.result()) from error
-        self.events.append(Event(before.time, ", ".join(words), before.energy() - phase.energy()))
+        lost = before.energy() - phase.energy()
+        self.events.append(Event(float(before.time), ", ".join(words), lost))
         self.phases.append(phase)
         self._acting = acts
 

@@ -68,7 +68,7 @@ class Sampling:
         memory = self.state.memory
         if memory[WAITS] == 1.0 and memory[HAS] == 0.0:
             for place, sensor in self._outside:
-                memory[place] = self._measured(sensor)
+                memory[place] = self.measured(sensor)
             memory[HAS] = 1.0
 
     def check(self, h: float, fixed: bool) -> None:
@@ -95,7 +95,7 @@ class Sampling:
                                  f"not divide: give a step that does, such as {near:.6g}, or "
                                  "variable steps, tolerance=Tolerance(...)")
 
-    def _measured(self, sensor: Sensor) -> float | NDArray:
+    def measured(self, sensor: Sensor) -> float | NDArray:
         """Measurement of a sensor in the state reached."""
         key = sensor.quantity, sensor.axes
         if key not in self._measure:
@@ -105,7 +105,7 @@ class Sampling:
     def _check_number(self, sensor: Sensor) -> None:
         name, quantity = sensor.name, sensor.quantity
         try:
-            value = np.asarray(self._measured(sensor))
+            value = np.asarray(self.measured(sensor))
         except InputError as error:
             raise InputError(f"sensor {name!r}: {error}") from error
         if value.ndim > 0:

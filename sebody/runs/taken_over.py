@@ -197,17 +197,15 @@ def _shown(point: NDArray) -> str:
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
-def take_works(new: Side, old: Side) -> None:
-    """Take over what has been done by ports of the same names."""
-    _by_name(new, old, "works", *({key: (k, 1) for key, k in numbered(
-        side.numbering.port_names)} for side in (new, old)))
-
-
 def take_multipliers(new: Side, old: Side) -> None:
     """Take over the multipliers of constraints of the same names."""
-    _by_name(new, old, "q", *({key: (side.numbering.multipliers[one], one.multipliers)
-                               for key, one in named(side.model.constraints)}
-                              for side in (new, old)))
+    others = dict(named(old.model.constraints))
+    for key, one in named(new.model.constraints):
+        if key in others:
+            at, before = (side.numbering.multipliers[c] for side, c in (
+                (new, one), (old, others[key])))
+            new.part("q")[..., at:at + one.multipliers] = old.part("q")[
+                ..., before:before + one.multipliers]
 
 
 def numbered(names: Iterable[str]) -> Iterator[tuple[tuple[str, int], int]]:
@@ -223,10 +221,3 @@ def named(elements: Iterable[Any]) -> Iterator[tuple[tuple[str, int], Any]]:
     elements = list(elements)
     for key, k in numbered(one.name for one in elements):
         yield key, elements[k]
-
-
-def _by_name(new: Side, old: Side, part: str, own: dict, others: dict) -> None:
-    """Take numbers of the same names over; of each, where they begin and how many there are."""
-    for key in own.keys() & others.keys():
-        (at, size), (before, _) = own[key], others[key]
-        new.part(part)[..., at:at + size] = old.part(part)[..., before:before + size]

@@ -1,7 +1,10 @@
 """Parts that let go and lock at given times: dropped payloads, clutches, latches."""
 
+from functools import cache
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from sebody import (
@@ -65,6 +68,16 @@ def test_a_payload_is_dropped_between_two_steps(planar, how):
     spin = run["hook.angular_velocity"][flies]
     if planar:
         np.testing.assert_allclose(spin, spin[0], atol=1e-10)
+
+
+def test_a_latch_in_a_flexible_mechanism_is_of_order_2():
+    """Released, and engaged again wherever it is, at times between the steps."""
+    runs = [simulate(holding(True, until=0.0513, from_=0.1207), 0.16 / n, 0.16, output_every=n)
+            for n in (8000, 16_000, 64_000)]
+    for name in ("hook.position", "hinge.angle", "tip.velocity", "hook.velocity"):
+        one, other, fine = (run[name][-1] for run in runs)
+        order = np.log2(np.abs(one - fine).max() / np.abs(other - fine).max())
+        assert 1.7 < order < 2.4, name
 
 
 def clutch(planar, **acting):
@@ -200,6 +213,151 @@ def test_friction_goes_with_its_joint():
     assert not run["rubbing.normal_force"][after].any()
 
 
+FORCE, LOAD, INERTIA = 6.0, 0.5, 0.4 + 0.5 + 0.01
+
+
+@cache
+def breaks_at():
+    """The time at which the force on the load of the pendulum below is `FORCE`, and its state."""
+    def force(y):
+        along, across = np.array([np.cos(y[0]), np.sin(y[0])]), np.array([-np.sin(y[0]),
+                                                                          np.cos(y[0])])
+        turning = -LOAD * 9.81 * np.cos(y[0]) / INERTIA
+        return np.linalg.norm(LOAD * (turning * across - y[1]**2 * along) + [0.0, LOAD * 9.81])
+
+    def passes(t, y):
+        return force(y) - FORCE
+
+    passes.terminal = True
+    found = solve_ivp(lambda t, y: (y[1], -LOAD * 9.81 * np.cos(y[0]) / INERTIA), (0.0, 2.0),
+                      (0.0, 0.0), "DOP853", events=passes, rtol=1e-13, atol=1e-13)
+    return float(found.t_events[0][0]), found.y_events[0][0]
+
+
+def pendulum(planar, **acting):
+    """A load at the end of a swinging arm, held by a weld."""
+    turned = (lambda v: np.array(v)[:2]) if planar else TURN.apply
+    model = Model(planar=planar)
+    model.node("pivot", turned([0.0, 0.0, 0.0]))
+    spatial = TURN.as_matrix() @ np.diag([0.3, 0.3, 0.4]) @ TURN.as_matrix().T
+    model.rigid_body("arm", "pivot", 1.0, 0.4 if planar else spatial)
+    model.attach("tip", turned([1.0, 0.0, 0.0]), "pivot")
+    model.node("load", turned([1.0, 0.0, 0.0]))
+    model.rigid_body("load", "load", LOAD, 0.01 if planar else 0.01 * np.eye(3))
+    model.revolute("pivot", name="hinge", **({} if planar else {"axis": Z}))
+    model.weld("load", to="tip", explicit=True, name="weld", **acting)
+    model.gravity(turned([0.0, -9.81, 0.0]))
+    return model
+
+
+@SPACES
+def test_a_weld_breaks_at_a_force(planar):
+    """At the time that the equation of the pendulum gives; the load flies on a parabola."""
+    time, (angle, rate) = breaks_at()
+    run = simulate(pendulum(planar, breaks_at=FORCE), 0.01, 0.6, tolerance=Tolerance(1e-11))
+    (event,) = run.events
+    assert event.what == "weld broke" and event.time == pytest.approx(time, abs=1e-8)
+    assert run["hinge.angle"][-1] == pytest.approx(angle + rate * (0.6 - time), abs=1e-7)
+    broken = run.t > time
+    assert not run["weld.force"][broken].any() and not run["weld.moment"][broken].any()
+    force = np.linalg.norm(run["weld.force"], axis=1)
+    assert 0.9 * FORCE < force.max() < FORCE
+    assert "weld broke; energy lost" in run.summary()
+
+
+@pytest.mark.parametrize("scheme", [None, generalized_alpha(index=2)], ids=["3", "2"])
+def test_fixed_steps_end_where_it_breaks(scheme):
+    """The time of the threshold, and states beside it, are of order 2."""
+    time, (angle, rate) = breaks_at()
+    errors = []
+    for h in (0.01, 0.005, 0.0025):
+        run = simulate(pendulum(True, breaks_at={"force": FORCE, "moment": 1e3}), h, 0.6, scheme)
+        errors.append((run.events[0].time - time,
+                       run["hinge.angle"][-1] - angle - rate * (0.6 - time)))
+    orders = np.log2(np.abs(np.array(errors[:-1]) / np.array(errors[1:])))
+    assert np.abs(orders - 2.0).max() < 0.25
+
+
+def test_a_latch_lets_go_at_an_angle():
+    """As the sensor says; a quantity that falls, a moment that breaks, and all in one run."""
+    model = pendulum(True, release_when="swing < -0.3")
+    model.sensor("swing", "hinge.angle")
+    run = simulate(model, 0.005, 0.6)
+    (event,) = run.events
+    assert event.what == "weld let go"
+    k = int(np.flatnonzero(run.t > event.time)[0])
+    slope = run["hinge.rate"][k]
+    assert run["hinge.angle"][k] - slope * (run.t[k] - event.time) == pytest.approx(-0.3, abs=1e-9)
+    assert not run["weld.force"][k:].any()
+
+
+def test_a_spring_breaks_at_its_moment():
+    """A torsion spring gives a moment alone, and has stored ``M^2 / 2k``."""
+    model = clutch(True, until=0.9)
+    model.switches.clear()
+    model.joints.pop()
+    model.torsion_spring("a", 2.0, to="b", name="shaft", breaks_at=1.5)
+    run = simulate(model, 0.001, 0.5)
+    (event,) = run.events
+    assert event.lost == pytest.approx(1.5**2 / 4.0, rel=1e-9)
+    angle = run["hinge a.angle"] - run["hinge b.angle"]
+    before = run.t < event.time
+    assert np.abs(angle[before]).max() < 0.75 < np.abs(angle[~before]).max()
+    assert not run["shaft.moment"][~before].any() and run.energy_balance() < 1e-6
+
+
+def test_one_break_leads_to_the_next():
+    """Two rods hold a load: what the first one bears goes to the other, at the same time."""
+    model = Model(planar=True)
+    model.node("load", (0.0, 0.0), keeps="translation")
+    model.point_mass("load", "load", 1.0)
+    for name, x, limit in (("one", -1.0, 6.9), ("other", 1.0, 7.2)):
+        model.node(name, (x, 1.0))
+        model.fix(name)
+        model.spring("load", name, 1e4, name=f"rod {name}", breaks_at=limit)
+    model.force("load", (0.0, -1.0), lambda t: 20.0 * t, name="weight", until=2.0)
+    run = simulate(model, 1e-3, 1.2)
+    first, second = run.events
+    assert first.what == "rod one broke" and second.what == "rod other broke"
+    assert second.time < first.time + 0.05
+    after = run.t > second.time
+    slope = np.diff(run["load.velocity"][after][:, 1]) / 1e-3
+    np.testing.assert_allclose(slope, -20.0 * run.t[after][:-1], atol=0.03)
+
+
+def test_loads_contacts_and_drives_have_times():
+    """A drive that lets go, a force that ends, a stop that is taken away."""
+    model = Model(planar=True)
+    model.node("cart", (0.0, 0.0))
+    model.rigid_body("cart", "cart", 2.0, 1.0)
+    rail = model.prismatic("cart", (1.0, 0.0), name="rail")
+    model.drive_slide(rail, lambda t: 0.5 * t * t, name="motor", until=0.4)
+    model.force("cart", (3.0, 0.0), 1.0, name="push", from_=0.6, until=0.8)
+    run = simulate(model, 1e-3, 1.0)
+    v, t = run["cart.velocity"][:, 0], run.t
+    expected = np.minimum(t, 0.4) + 1.5 * np.clip(t - 0.6, 0.0, 0.2)
+    np.testing.assert_allclose(v, expected, atol=1e-6)
+    off = (t < 0.6) | (t >= 0.8)
+    assert not run["push.force"][off].any() and run["push.force"][~off].all(axis=0)[0]
+    assert not run["motor.thrust"][t >= 0.4].any() and run.energy_balance() < 1e-5
+    assert run["push.work"][-1] == pytest.approx(3.0 * (run["cart.position"][800, 0]
+                                                        - run["cart.position"][600, 0]), rel=1e-6)
+
+
+def test_a_stop_is_taken_away():
+    model = Model(planar=True)
+    model.node("cart", (0.0, 0.0))
+    model.rigid_body("cart", "cart", 1.0, 1.0)
+    rail = model.prismatic("cart", (1.0, 0.0), name="rail")
+    model.stop(rail, upper=0.1, stiffness=1e4, name="gate", until=0.5)
+    model.initial_velocity("cart", (1.0, 0.0))
+    model.force("cart", (4.0, 0.0), 1.0, name="push")
+    run = simulate(model, 1e-3, 1.0)
+    gate = run["gate.normal_force"]
+    assert gate[run.t < 0.5].max() > 10.0 and not gate[run.t >= 0.5].any()
+    assert run["cart.position"][run.t < 0.5].max() < 0.13 and run["cart.position"][-1, 0] > 0.3
+
+
 def displaced():
     """A revolute joint that is to close at a place where its nodes are apart."""
     model = Model(planar=True)
@@ -223,6 +381,12 @@ def test_a_joint_that_does_not_fit_is_refused_by_name():
     ({"until": -1.0}, r"'clutch': until is -1.0: give a time > 0"),
     ({"until": "soon"}, r"'clutch': until is 'soon': give a time > 0"),
     ({"from_": 0.0}, r"'clutch': from_ is 0.0: give a time > 0"),
+    ({"breaks_at": 0.0}, "'clutch': breaks_at of the force is 0.0: give a force, or"),
+    ({"breaks_at": {"torque": 2.0}}, "'clutch': breaks_at is .*: give a force, or"),
+    ({"breaks_at": {"moment": "much"}}, "'clutch': breaks_at of the moment is 'much': give a for"),
+    ({"release_when": 0.3}, "'clutch': release_when is 0.3: give a sensor or quantity and its li"),
+    ({"release_when": "a.angle = 2"}, "'clutch': release_when is 'a.angle = 2': give a sensor or"),
+    ({"release_when": "a.angle > two"}, "'clutch': release_when is 'a.angle > two': give a sens"),
     ({"from_": 0.2, "until": 0.2}, "'clutch': until and from_ are both 0.2: give two times"),
 ])
 def test_times_that_are_none(given, said):
@@ -230,8 +394,17 @@ def test_times_that_are_none(given, said):
         clutch(True, **given)
 
 
+@pytest.mark.parametrize("given, said", [
+    ({"release_when": "swing > 2"}, "'weld' cannot tell when to let go: 'swing' is unknown"),
+    ({"release_when": "load.velocity > 2"}, "'weld': release_when reads 'load.velocity', which"),
+])
+def test_thresholds_of_what_is_not(given, said):
+    with pytest.raises(InputError, match=said):
+        simulate(pendulum(True, **given), 0.01, 0.1)
+
+
 def test_a_misspelt_time():
-    with pytest.raises(TypeError, match="'clutch' has no untill=: of when it acts there are until"):
+    with pytest.raises(TypeError, match="'clutch' has no untill=: of when it acts there are"):
         clutch(True, untill=0.2)
 
 
