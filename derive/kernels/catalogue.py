@@ -10,6 +10,7 @@ from sebody.derive.formulas import (
     frictions,
     joints,
     rigid,
+    ropes,
     stops,
 )
 
@@ -54,6 +55,12 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "bearing": lambda: forces.bearing(False),
     "planar_bearing": lambda: forces.bearing(True),
     "planar_bushing": lambda: forces.bushing(True),
+    "rope": lambda: ropes.rope(False),
+    "planar_rope": lambda: ropes.rope(True),
+    "rope_grip": lambda: ropes.grip(False),
+    "planar_rope_grip": lambda: ropes.grip(True),
+    **{"planar_" * planar + f"rope_{name}": partial(ropes.span, planar, sheaves)
+       for sheaves, name in enumerate(ropes.SPANS) for planar in (False, True)},
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
        for way in ("turn", "slide", "line") for part in (actuators.motor, actuators.rotor)
        for planar in (False, True)},

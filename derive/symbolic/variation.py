@@ -114,7 +114,7 @@ def _prove(name, short, chain, frames) -> None:
     with mpmath.workdps(50):
         for _ in range(3):
             values = _random_point(symbols, frames, generator)
-            out = [mpmath.mpf(v) for v in f(*values)]
+            out = [mpmath.mpmathify(v) for v in f(*values)]     # roots may be of negative numbers
             a, b = out[: len(short)], out[len(short):]
             size = max(abs(v) for v in out) or mpmath.mpf(1)
             worst = max(abs(p - q) for p, q in zip(a, b, strict=True)) / size

@@ -36,7 +36,7 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
 def placed(model: Mechanism, numbering: Numbering) -> NDArray:
     """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
 
-    Ways along paths count as positions.
+    Ways along paths and lengths of ropes count as positions.
     """
     flags = np.zeros(numbering.total, dtype=bool)
     for way in model.ways():
@@ -113,9 +113,8 @@ class _Order:
         self.multipliers: dict[Element, int] = {}   # constraint -> first multiplier
         self._awaited = awaited
         self._constraints: dict[DofBlock, list[Element]] = defaultdict(list)     # on each DOF block
-        self._ways = {c: c.path.way for c in model.constraints
-                      if c.path is not None and c.path.way is not None and c.shares is None
-                      and c.path.way.solved}
+        self._ways = {c: c.way for c in model.constraints
+                      if c.way is not None and c.shares is None and c.way.solved}
         self._sharing = [c for c in model.constraints if c.shares is not None]
         for constraint in model.constraints:
             if constraint.shares is not None:

@@ -24,6 +24,8 @@ from sebody.model.parts import (
     Motion,
     Node,
     Path,
+    Rope,
+    Sheave,
     Superelement,
 )
 from sebody.model.plane import Plane
@@ -56,6 +58,8 @@ class Mechanism:
     default_names: Counter[str] = field(default_factory=Counter, init=False)    # how often wanted
     sensors: dict[str, Sensor] = field(default_factory=dict, init=False)
     paths: dict[str, Path] = field(default_factory=dict, init=False)
+    sheaves: dict[str, Sheave] = field(default_factory=dict, init=False)
+    ropes: dict[str, Rope] = field(default_factory=dict, init=False)
     controllers: dict[str, Controller] = field(default_factory=dict, init=False)
     switches: dict[str, Switch] = field(default_factory=dict, init=False)   # of what lets go, locks
     is_phase: bool = field(default=False, init=False)   # of a run: what acts does not change
@@ -95,9 +99,10 @@ class Mechanism:
                                   for t in (n.position, n.rotation) if t is not None)) + self.ways()
 
     def ways(self) -> list[DofBlock]:
-        """Ways of points on paths, which are unknowns of their own."""
-        return list(dict.fromkeys(c.path.way for c in self.constraints
-                                  if c.path is not None and c.path.way is not None))
+        """Unknowns on no node: ways of points on paths, lengths of ropes."""
+        found = [c.way for c in self.constraints if c.way is not None]
+        found += [rope.winch for rope in self.ropes.values() if rope.winch is not None]
+        return list(dict.fromkeys(found))
 
     def size(self) -> float:
         """Characteristic length of the model, at least one unit of length."""

@@ -26,6 +26,7 @@ from sebody.model import (
     nodes,
     path_joints,
     paths,
+    ropes,
     sensors,
     series,
     shafts,
@@ -112,6 +113,9 @@ class Model(Mechanism):
     path = paths.path
     path_joint = path_joints.path_joint
     drive_way = path_joints.drive_way
+
+    sheave = ropes.sheave
+    rope = ropes.rope
 
     drive_angle = drives.drive_angle
     drive_slide = drives.drive_slide

@@ -252,6 +252,7 @@ class Element:
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
     point: BodyPoint | None = None  # of a contact; the body's coordinates come first
     path: OnPath | None = None      # of a point on a path; the body's coordinates come first
+    hidden: DofBlock | None = None  # an unknown that its equation determines, of ropes
     shares: "Element | None" = None     # whose multipliers it adds to
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     seen: int | None = None     # of friction along a path: piece whose tangent it reads
@@ -288,6 +289,11 @@ class Element:
         """Unknowns of an element whose first ones are those of a body, with its multipliers."""
         own = sum(dof_block.start.size for dof_block in self.dof_blocks) + self.carried[1]
         return own + self.equations.multipliers
+
+    @property
+    def way(self) -> DofBlock | None:
+        """An unknown that is on no node: the way of a point on a path, a length of a rope."""
+        return self.hidden if self.path is None else self.path.way
 
     @property
     def equations(self) -> "Element":
@@ -380,6 +386,55 @@ class Way(NamedTuple):
 TURNS = ("revolute", "cylindrical")                 # joints with an angle
 SLIDES = ("prismatic", "slider", "cylindrical")     # joints with a way
 COUPLING = "coupling"                               # an equation between two of these coordinates
+
+
+class Sheave(NamedTuple):
+    """A sheave or drum on a node, which ropes pass or end on."""
+
+    name: str
+    node: Node
+    radius: float           # [length]
+    axis: NDArray           # unit vector, global axes at the start, (3,)
+
+
+class RopePlace(NamedTuple):
+    """A point or sheave of a rope."""
+
+    node: Node
+    sheave: Sheave | None
+    radius: float           # with the sign of the side: negative where it passes clockwise
+    normal: NDArray         # that sides are seen from, global axes at the start, (3,)
+    wrap: float             # angle of contact at the start [rad]
+
+
+class Stretch(NamedTuple):
+    """A part of a rope with one tension: its law, and the spans that are in it."""
+
+    law: Element
+    spans: tuple[Element, ...]
+
+    @property
+    def length(self) -> DofBlock:
+        """The unknown of its length."""
+        assert self.law.hidden is not None
+        return self.law.hidden
+
+
+class Rope(NamedTuple):
+    """A rope over points and sheaves."""
+
+    name: str
+    places: tuple[RopePlace, ...]
+    stretches: tuple[Stretch, ...]
+    winch: DofBlock | None      # what a winch has given
+
+    def __repr__(self) -> str:
+        over = ", ".join(place.node.name if place.sheave is None else place.sheave.name
+                         for place in self.places)
+        return f"<Rope {self.name!r} over {over}>"
+
+
+ROPE = "rope"       # kind of the joints that hold the equations of ropes
 
 
 @dataclass(eq=False, repr=False)

@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 from sebody.contract.layout import ENERGIES
 from sebody.model.numbering import record_counts
 from sebody.model.parts import SLIDES, TURNS
-from sebody.quantities import contacts, forces, inside, motion, paths
+from sebody.quantities import contacts, forces, inside, motion, paths, ropes
 from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
 
 FE_NODE = "node inside a body"
-OPTIONAL = PRESSING, SLIDING, COUPLED, SIGNAL, CONTROLLER, OUTPUT = (   # told where there are some
-    "contact, stop or friction", "joint on a path", "coupling", "sensor, signal or actuator",
+OPTIONAL = PRESSING, SLIDING, COUPLED, ROPE, SIGNAL, CONTROLLER, OUTPUT = (     # if there are some
+    "contact, stop or friction", "joint on a path", "coupling", "rope",
+    "sensor, signal or actuator",
     "controller", "output of a body")
 
 
@@ -187,6 +188,11 @@ PATH_JOINT = {
     "normal_force": Quantity(paths.normal_force),
     "power": Quantity(paths.power, "force length/time"),
 }
+ROPES = {
+    "tension": Quantity(ropes.tension, "force", numbered=True),
+    "length": Quantity(ropes.length, "length"),
+    "elongation": Quantity(ropes.elongation, "length"),
+}
 
 
 def _effort(formula: Callable[..., Any], has: Callable[..., bool]) -> dict[str, Quantity]:
@@ -214,6 +220,7 @@ OWNERS = (
     Owner("body", "of bodies ({names}) there are {quantities}", forces.bodies, BODY),
     Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies, NODE_OF_BODY),
     Owner(SLIDING, "of joints on paths {quantities}", paths.sliding, PATH_JOINT),
+    Owner(ROPE, "of ropes {quantities}", ropes.ropes, ROPES),
     Owner("joint", "of joints {quantities}", motion.joints, JOINT),
     Owner("drive", "of drives {quantities}", forces.drives, DRIVE),
     Owner(COUPLED, "of couplings {quantities}", forces.couplings, COUPLING),

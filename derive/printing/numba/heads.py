@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable
 
+import sympy as sp
+
 from sebody.contract.layout import Part
 from sebody.derive.form.counts import FIRST_ROTATION, POSITIONS, ROTATIONS, WIDTH
 from sebody.derive.form.kernel import Kernel
-from sebody.derive.formulas.elements import Constant, Element
+from sebody.derive.formulas.elements import AMPLITUDE, Constant, Element
 from sebody.derive.kernels.body_contact import BodyContact
 from sebody.derive.kernels.body_load import BodyLoad
 from sebody.derive.kernels.layouts import Layout
@@ -165,9 +167,13 @@ def element_head(given: Element, kernel: Kernel) -> Head:
          *memory(name for name, _ in given.memory),
          f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
          f"POWER = {power}        # does work on the system: a load, damper or drive",
-         f"DRIVEN = {multipliers > 0 and power}        # a constraint that depends on time",
+         f"DRIVEN = {multipliers > 0 and power and _reads_amplitude(given)}        # a constraint that depends on time",
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         (), (PART,) if constants else ())
+
+
+def _reads_amplitude(given: Element) -> bool:
+    return any(AMPLITUDE[0] in sp.sympify(one).free_symbols for one in given.residual)
 
 
 def products_head(own: Head, kernel: Kernel) -> Head:

@@ -19,7 +19,7 @@ from sebody.contract.layout import (
     VELOCITY,
     Row,
 )
-from sebody.verify.check import laws
+from sebody.verify.check import laws, ropes
 from sebody.verify.check.states import (
     LIMIT,
     STATES,
@@ -51,12 +51,13 @@ def element_case(module: ModuleType, seed: int) -> Case:
     size = Row(module.__name__, module.CONSTANTS).size({})
     seen = random.normal(size=getattr(module, "SEES", 0))
     index = np.r_[index_row(n, module.N_POSITIONS, nrot), 9 + kept]     # where those are
-    return Case(module, n, index,
+    case = Case(module, n, index,
                 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n),
                 np.r_[np.full(9, TURNED), np.zeros(kept), seen],
                 np.r_[np.zeros(9 + kept), seen],
                 random.normal(size=3), AMPLITUDES)
+    return ropes.apart(case)
 
 
 def joint_force(case: Case) -> float:
@@ -190,8 +191,20 @@ def check_element(name: str, module: ModuleType) -> list[CheckRow]:
     rows = []
     if laws.follows(module):
         return laws.check_law(name, module, element_case)
+    if ropes.is_law(module):
+        return _of_rope(name, module)
     for seed in range(STATES):
         for criterion, measure in criteria(module).items():
             error = measure(element_case(module, seed))
             rows.append(CheckRow(name, criterion, seed, error, None, LIMIT))
     return rows
+
+
+def _of_rope(name: str, module: ModuleType) -> list[CheckRow]:
+    """All criteria of the law of a rope, in all branches."""
+    own = {"tangent": element_tangent, "velocity": joint_velocity,
+           "acceleration": joint_acceleration, **ropes.LAW}
+    return [CheckRow(name, f"{criterion}, {branch}", seed, measure(case), None, LIMIT)
+            for seed in range(STATES)
+            for branch, case in ropes.cases(element_case(module, seed)).items()
+            for criterion, measure in own.items()]

@@ -101,8 +101,9 @@ class Case(NamedTuple):
 
     @property
     def first_rotation(self) -> int:
-        """Where rotations begin among the unknowns."""
-        return first_rotation(self.n_positions, self.planar)
+        """Where rotations begin among the unknowns; elements may have scalars before them."""
+        own = getattr(self.module, "ROTATIONS", None)
+        return first_rotation(self.n_positions, self.planar) if own is None else own
 
     @property
     def first_mode(self) -> int:

@@ -1,0 +1,126 @@
+"""Ropes over points and sheaves: lengths between them, and the law of the rope.
+
+A rope consists of stretches of one tension. Each has an unknown of its own, its length s between
+the places where its material is held, with the equation
+
+    sum_spans lambda - s = 0
+
+whose multiplier is the tension, and the law of the rope as an energy of s. A span leads from one
+point or circle to the next. With d from centre to centre, radii r with the sign of the side on
+which the rope passes, ``D = r_b - r_a`` and ``l^2 = d . d - D^2`` the rope leaves circle a and
+meets circle b in the direction of the angle ``gamma = arg d - atan2(D, l)``, and
+
+    lambda = l + r_a gamma_a - r_b gamma_b
+
+counts the arcs up to rays that are fixed in the nodes of the circles, from which gamma is measured;
+its variation is that of the distance of the two points of contact along the rope.
+"""
+
+import sympy as sp
+
+from sebody.derive.form.spaces import Space
+from sebody.derive.formulas.elements import (
+    Block,
+    Constant,
+    Element,
+    amplitude,
+    choose,
+    constant,
+    element,
+    in_time,
+    kept,
+    near_angle,
+    position,
+    rotation,
+    varied,
+)
+from sebody.derive.symbolic.rotations import cross
+from sebody.derive.symbolic.variation import differential
+
+SPANS = "line", "end", "span"       # by the number of sheaves at their ends
+
+
+def span(planar: bool, sheaves: int) -> Element:
+    """Length of a rope from a to b, of which none, the first or both are sheaves."""
+    space = Space(planar)
+    places = [position(space, name) for name in "ab"]
+    turns = [rotation(space, name) for name in "ab"[:sheaves]]
+    d = places[1].state.symbols - places[0].state.symbols
+    radii = [constant(space, f"r_{name}", "scalar", f"radius of sheave {name}, negative where "
+                      "the rope passes it clockwise") for name in "ab"[:sheaves]]
+    r = [one.symbols[0] for one in radii] + [sp.S.Zero] * (2 - sheaves)
+    straight = sp.sqrt(d.dot(d) - (r[1] - r[0])**2)
+    own, memory, length = [], [], straight
+    for k, (name, turn) in enumerate(zip("ab", turns, strict=False)):
+        angle, axes = _direction(space, name, turn, d, r[1] - r[0], straight)
+        counted = constant(space, f"arc_{name}", "scalar", f"1 if the arc on {name} is of this "
+                           "stretch, 0 if the sheave holds the rope")
+        own += [counted, *axes]
+        memory.append((f"angle_{name}", angle))
+        length += (1 - 2 * k) * counted.symbols[0] * r[k] * angle
+    arc = constant(space, "arc", "scalar", "length of arcs at the start [length]")
+    return element("planar_" * planar + f"rope_{SPANS[sheaves]}",
+                   "a rope's length from one point or sheave to the next", space,
+                   (*places, *turns), (*radii, *own, arc),
+                   constraints=[length + arc.symbols[0]], memory=memory)
+
+
+def grip(planar: bool) -> Element:
+    """Rope w that a sheave a has taken up, held on it: ``r_a gamma_a - w = 0``."""
+    space = Space(planar)
+    a, b, turn = position(space, "a"), position(space, "b"), rotation(space, "a")
+    taken = amplitude(space, "w")
+    d = b.state.symbols - a.state.symbols
+    radii = [constant(space, f"r_{name}", "scalar", "radius with sign") for name in "ab"]
+    r = [one.symbols[0] for one in radii]
+    straight = sp.sqrt(d.dot(d) - (r[1] - r[0])**2)
+    angle, axes = _direction(space, "a", turn, d, r[1] - r[0], straight)
+    return element("planar_" * planar + "rope_grip", "rope that a sheave takes up", space,
+                   (a, b, taken, turn), (*radii, *axes),
+                   constraints=[r[0] * angle - taken.state.symbols[0]],
+                   memory=[("angle_a", angle)])
+
+
+def _direction(space: Space, name: str, turn: Block, d: sp.Matrix, D: sp.Expr, straight: sp.Expr
+               ) -> tuple[sp.Expr, list[Constant]]:
+    """Angle of a rope's direction from a ray of a sheave, and the axes it is measured in."""
+    axes = [constant(space, f"e1_{name}", "vector", "ray, in axes of the node")]
+    first = axes[0].symbols
+    if space.planar:
+        second = cross(sp.Matrix([0, 0, 1]), first)
+    else:
+        axes.append(constant(space, f"e2_{name}", "vector", "axis of the sheave x ray"))
+        second = axes[1].symbols
+    seen = turn.state.symbols.T * d
+    angle = sp.atan2(second.dot(seen), first.dot(seen)) - sp.atan2(D, straight)
+    return near_angle(angle, kept(f"angle_{name}")), axes
+
+
+def rope(planar: bool) -> Element:
+    """The law of a stretch of rope, whose multiplier is its tension.
+
+    With the material m between its ends, ``e = s - m``, ``T = (E A e + F) / m`` where ``e > 0``,
+    with the energy ``E A e^2 / (2 m)``; slack it is free of force. The damping ``F = c e'`` is
+    limited to the elastic part, so that a rope never pushes, and its force is continuous where it
+    becomes taut. The material is that of the start, and what sheaves or a winch at its ends have
+    given since then.
+    """
+    space = Space(planar)
+    meanings = {"stiffness": "E A [force]", "damping": "c [force time]",
+                "material": "material at the start [length]",
+                "given_a": "material by what the unknown of the first end has become",
+                "given_b": "and of that of the other end"}
+    constants = [constant(space, name, "scalar", meaning) for name, meaning in meanings.items()]
+    stiffness, damping, start, by_a, by_b = (one.symbols[0] for one in constants)
+    blocks = [amplitude(space, name) for name in ("s", "wa", "wb")]
+    s, a, b = (one.state.symbols[0] for one in blocks)
+    material = start + by_a * a + by_b * b
+    e = s - material
+    rate, elastic = differential(e, in_time(blocks)), stiffness * e
+    viscous = damping * rate
+    limited = choose(viscous - elastic, elastic, choose(-viscous - elastic, -elastic, viscous))
+    zero = sp.Float(0.0)
+    return element("planar_" * planar + "rope", "law of a rope", space, blocks,
+                   constants, constraints=[-s],
+                   strain=choose(e, stiffness * e**2 / (2 * material), zero),
+                   load=-choose(e, limited / material, zero) * differential(e, varied(blocks)))

@@ -1,0 +1,245 @@
+"""Ropes over points and sheaves, and the sheaves and drums that they pass or end on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sebody.basics import inputs
+from sebody.basics.errors import InputError
+from sebody.basics.spelling import unknown
+from sebody.model.arguments import chosen_name, direction, dof_block, known
+from sebody.model.mechanism import Mechanism
+from sebody.model.nodes import ground
+from sebody.model.parts import (
+    ROPE,
+    Attachment,
+    DofBlock,
+    Element,
+    Joint,
+    Node,
+    Rope,
+    RopePlace,
+    Sheave,
+    Stretch,
+    positions,
+)
+from sebody.model.rope_geometry import Span, spans_of
+
+Z = np.array([0.0, 0.0, 1.0])
+SIDES = {"+": 1.0, "-": -1.0}
+
+
+def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
+           axis: ArrayLike | str | None = None) -> Sheave:
+    """Sheave that ropes pass, or drum that they end on, with its centre on a node.
+
+    Its axis turns with the node. A rope passes it without resistance; at the first or last place of
+    a rope it is a drum, on which the rope is wound as the node turns about the axis.
+
+    Parameters
+    ----------
+    name : str
+        By which `rope` finds it.
+    node : Node or str
+        At the centre. If it keeps no rotation the axis stays as it is.
+    radius : float
+        Of the middle of the rope on it [length].
+    axis : (3,) or 'x', 'y', 'z', optional
+        In space; its direction says which sense is ``+``. In a plane it is z.
+
+    Raises
+    ------
+    InputError
+        A name that is taken, a radius that is no positive number, or no axis in space.
+
+    Examples
+    --------
+    >>> model.sheave("head", "boom.tip", 0.2, axis="y")
+    """
+    name = inputs.name(name, "name of a sheave")
+    what = f"sheave {name!r}"
+    if name in model.sheaves:
+        raise InputError(f"{what} is there already: give another name")
+    a = known(model, node)
+    dof_block(a, "position")
+    radius = inputs.number(radius, f"{what}: radius", above=0.0)
+    if model.planar:
+        if axis is not None:
+            raise InputError(f"{what}: in a plane the axis is normal to it: leave axis= out")
+        along = Z
+    elif axis is None:
+        raise InputError(f"{what} has no axis: give axis=, the direction it turns about")
+    else:
+        along = direction(model, axis, what, a)
+    model.sheaves[name] = Sheave(name, a, radius, along)
+    return model.sheaves[name]
+
+
+def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], stiffness: float,
+         damping: float = 0.0, length: float | None = None, pretension: float = 0.0,
+         wrap: str = "+") -> Rope:
+    """Rope from a point over points and sheaves to a last point: it only pulls.
+
+    Its tension is ``T = E A e/m + c e'/m`` with the elongation e and the material m between its
+    ends, and zero where it is slack; the part of the damping is at most that of the elongation.
+    Points on the way are rings that it slides through without friction. It has no mass, and bends
+    without resistance. Where it leaves and meets sheaves follows from the geometry at each time.
+
+    Parameters
+    ----------
+    name : str
+        Of its results, ``<name>.tension``, ``<name>.elongation``, ``<name>.length``.
+    places : sequence of Node, Sheave or str
+        In the order of the rope: nodes, or sheaves by name. The ends of the rope are fixed to the
+        first and last; a sheave there is a drum.
+    stiffness : float
+        E A [force]: a rope of length L has the stiffness E A / L.
+    damping : float
+        c [force time].
+    length : float, optional
+        Without force [length]; by default that of its way at the start, with `pretension`.
+    pretension : float
+        Tension at the start, in place of a length [force].
+    wrap : str
+        ``+`` where the rope passes a sheave counterclockwise about its axis, ``-`` where clockwise:
+        one sign for all, or one for each sheave in the order of the rope, such as ``+-+``.
+
+    Raises
+    ------
+    InputError
+        Fewer than two places, places that coincide or sheaves that overlap, sheaves whose plane is
+        not that of the rope, numbers that make no sense.
+
+    Examples
+    --------
+    >>> model.rope("hoist", ("winch", "head", "hook"), stiffness=4e6, wrap="-")
+    """
+    what = f"rope {inputs.name(name, 'name of a rope')!r}"
+    found = [_place(model, what, one) for one in inputs.items(
+        places, f"{what}: places", "give nodes and names of sheaves")]
+    if len(found) < 2:
+        raise InputError(f"{what} has {len(found)} place{'s' * (len(found) != 1)}: give the nodes "
+                         "and sheaves from its first point to its last")
+    stiffness = inputs.number(stiffness, f"{what}: stiffness", above=0.0)
+    damping = inputs.number(damping, f"{what}: damping", least=0.0)
+    pretension = inputs.number(pretension, f"{what}: pretension", least=0.0)
+    made, spans = spans_of(what, found, _signs(what, wrap, found))
+    way = sum(span.length for span in spans) + sum(
+        abs(place.radius) * place.wrap for place in made[1:-1])
+    if length is None:
+        material = way / (1.0 + pretension / stiffness)
+    elif pretension:
+        raise InputError(f"{what} has a length and a pretension: leave one of them out")
+    else:
+        material = inputs.number(length, f"{what}: length", above=0.0)
+    name = chosen_name(model, name, ROPE)
+    stretch = _stretch(model, name, made, spans, way, {
+        "stiffness": stiffness, "damping": damping, "material": material})
+    grips = _drums(model, name, made, spans, stretch)
+    first, last = made[0].node, made[-1].node
+    model.joints.append(Joint(name, (stretch.law, *stretch.spans, *grips), first, last, None, ROPE))
+    model.ropes[name] = Rope(name, tuple(made), (stretch,), None)
+    return model.ropes[name]
+
+
+def _place(model: Mechanism, what: str, place: object) -> tuple[Node, Sheave | None]:
+    if isinstance(place, Sheave):
+        if model.sheaves.get(place.name) is not place:
+            raise InputError(f"{what}: sheave {place.name!r} is of another model: use that of this "
+                             "one")
+        return place.node, place
+    if isinstance(place, str) and place in model.sheaves and place not in model.nodes:
+        return model.sheaves[place].node, model.sheaves[place]
+    if isinstance(place, str) and place not in model.nodes:
+        raise unknown("node or sheave", place, [*model.nodes, *model.sheaves],
+                      f"{what}: the model has", f"{what}: the model has none")
+    a = known(model, place)
+    dof_block(a, "position")
+    return a, None
+
+
+def _signs(what: str, wrap: object, places: Sequence[tuple[Node, Sheave | None]]) -> list[float]:
+    """The side on which the rope passes each place: 0 of points."""
+    count = sum(sheave is not None for _, sheave in places)
+    if not isinstance(wrap, str) or set(wrap) - set(SIDES) or len(wrap) not in (1, count):
+        raise inputs.refusal(f"{what}: wrap", wrap, "give '+' or '-', or one of them for each of "
+                             f"its {count} sheaves, such as '+-'")
+    signs = iter(wrap * count if len(wrap) == 1 else wrap)
+    return [0.0 if sheave is None else SIDES[next(signs)] for _, sheave in places]
+
+
+def _hidden(name: str, value: float, fixed: bool = False) -> Node:
+    """A node in no table of the model, whose position is one unknown."""
+    block = DofBlock(name, np.array([value]), np.zeros(1), fixed)
+    return Node(name, np.zeros(0), block, None)
+
+
+def _stretch(model: Mechanism, name: str, places: Sequence[RopePlace], spans: Sequence[Span],
+             way: float, constants: dict[str, float]) -> Stretch:
+    """The equations of a stretch with one tension, whose ends are its first and last place."""
+    arcs = [abs(place.radius) * place.wrap for place in places]
+    arcs[0] = arcs[-1] = 0.0
+    lengths = _hidden(f"{name}.length", way)
+    ends = [_hidden(f"{name}.{end}", 0.0, fixed=True) if place.sheave is None else
+            _hidden(f"{name}.{end}", 0.0) for end, place in zip(
+                ("first end", "last end"), (places[0], places[-1]), strict=True)]
+    given = {f"given_{end}": -float(place.sheave is not None) for end, place in zip(
+        "ab", (places[0], places[-1]), strict=True)}
+    law = Element(name, model.kind_of("rope"), positions(lengths, *ends), constants | given, 1,
+                  hidden=lengths.position)
+    elements = [_span(model, name, span, law, arcs[k], (0 < k, k + 1 < len(spans)))
+                for k, span in enumerate(spans)]
+    return Stretch(law, tuple(elements))
+
+
+def _span(model: Mechanism, name: str, span: Span, law: Element, arc: float,
+          counted: tuple[bool, bool]) -> Element:
+    """The equation of a span, which adds to that of the law; arcs are counted where they are free.
+    """
+    ends, directed = [span.a, span.b], span.direction
+    flags = [float(one) for one in counted]
+    radii = [span.a.radius, span.b.radius]
+    if span.a.sheave is None and span.b.sheave is not None:     # seen from the sheave
+        ends, flags, directed = ends[::-1], flags[::-1], -directed
+        radii = [-radius for radius in radii[::-1]]
+    on = [end for end in ends if end.sheave is not None]
+    constants: dict[str, float | NDArray] = {"arc": arc}
+    for letter, end, flag, radius in zip("ab", on, flags, radii, strict=False):
+        constants |= {f"r_{letter}": radius, f"arc_{letter}": flag,
+                      **_axes(model, letter, directed, end.normal)}
+    kind = ("rope_line", "rope_end", "rope_span")[len(on)]
+    return Element(name, model.kind_of(kind), positions(*(end.node for end in ends))
+                   + tuple(_turning(model, end.node) for end in on), constants, 0, shares=law)
+
+
+def _drums(model: Mechanism, name: str, places: Sequence[RopePlace], spans: Sequence[Span],
+           stretch: Stretch) -> list[Element]:
+    """Equations of what drums at the ends have taken up."""
+    found = []
+    for k, (place, other, span, sign) in enumerate((
+            (places[0], places[1], spans[0], 1.0), (places[-1], places[-2], spans[-1], -1.0))):
+        if place.sheave is None:
+            continue
+        taken = stretch.law.attachments[1 + k]
+        found.append(Element(
+            name, model.kind_of("rope_grip"),
+            positions(place.node, other.node) + (taken, _turning(model, place.node)),
+            {"r_a": sign * place.radius, "r_b": sign * other.radius,
+             **_axes(model, "a", sign * span.direction, place.normal)}, 1,
+            hidden=taken.dof_block))
+    return found
+
+
+def _axes(model: Mechanism, letter: str, ray: NDArray, normal: NDArray) -> dict[str, NDArray]:
+    """The axes in which a sheave sees directions: the ray, and in space what is across it."""
+    if model.planar:
+        return {f"e1_{letter}": ray[:2]}
+    return {f"e1_{letter}": ray, f"e2_{letter}": np.cross(normal, ray)}
+
+
+def _turning(model: Mechanism, node: Node) -> Attachment:
+    """The rotation of a node; of the ground where it keeps none."""
+    return Attachment(node if node.rotation is not None else ground(model, node), "rotation")
