@@ -176,7 +176,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t933 = e1_a_x*t919
             t934 = e1_a_y*t924
             t935 = t933 + t934
-            t936 = t932*t935
             t937 = -aa_x + ab_x
             t938 = -aa_y + ab_y
             t939 = 2*Oma_z

@@ -173,7 +173,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t932 = e1_a_x*t918
             t933 = e1_a_y*t923
             t934 = t932 + t933
-            t935 = t931*t934
             t936 = -aa_x + ab_x
             t937 = -aa_y + ab_y
             t938 = 2*Oma_z

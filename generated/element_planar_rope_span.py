@@ -238,7 +238,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t939 = e1_a_x*t934
             t940 = e1_a_y*t936
             t941 = t939 + t940
-            t942 = t924*t941
             t943 = -t922
             t944 = (-t921*(2*t939 + 2*t940) - t922*(-2*t935 + 2*t937))/(t923*t923)
             t945 = t900/t903
@@ -270,7 +269,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t969 = e1_b_x*t964
             t970 = e1_b_y*t966
             t971 = t969 + t970
-            t972 = t956*t971
             t973 = -t954
             t974 = (-t953*(2*t969 + 2*t970) - t954*(-2*t965 + 2*t967))/(t955*t955)
             g[6] = (arc_a*r_a*(t921*t924*(e1_a_x*t931 - e1_a_y*t933) + t921*t938*t944 +

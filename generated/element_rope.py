@@ -46,8 +46,8 @@ INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (50, 0, 0, 0),
-              "column": (105, 0, 0, 0)}
+OPERATIONS = {"residual": (55, 0, 0, 0),
+              "column": (111, 0, 0, 0)}
 
 
 @kernel_function
@@ -72,22 +72,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         ywb = q[unknowns[2]]
         ydwb = v[unknowns[2]]
         lam_1 = q[unknowns[3]]
-        t0 = -ys
-        t1 = given_a*ywa
-        t2 = given_b*ywb
-        t3 = material + t1 + t2
-        t4 = -t0 - t3
-        t5 = 2*material + 2*t1 + 2*t2
-        t6 = stiffness*t4
-        t7 = 2*t6/t5
-        t8 = damping*(-given_a*ydwa - given_b*ydwb + yds)
-        t9 = -t6
-        t10 = (t6 if t8 + t9 > 0.0 else (t9 if -t6 - t8 > 0.0 else t8))/t3 if t4 > 0.0 else 0.0
-        t11 = (2*stiffness*t4*t4)/(t5*t5)
-        g[0] = -lam_1 + t10 + (t7 if t4 > 0.0 else 0)
-        g[1] = -given_a*t10 + (-given_a*t11 - given_a*t7 if t4 > 0.0 else 0)
-        g[2] = -given_b*t10 + (-given_b*t11 - given_b*t7 if t4 > 0.0 else 0)
-        g[3] = t0
+        t0 = given_a*ywa
+        t1 = given_b*ywb
+        t2 = 2*material + 2*t0 + 2*t1
+        t3 = -ys
+        t4 = material + t0 + t1
+        t5 = -t3 - t4
+        t6 = stiffness*t5
+        t7 = 1.0 if t5 > 0.0 else 0.0
+        t8 = 2*t7
+        t9 = t6*t8/t2
+        t10 = damping*(-given_a*ydwa - given_b*ydwb + yds)
+        t11 = 1.0 if -t10 - t6 > 0.0 else 0.0
+        t12 = 1.0 if t10 - t6 > 0.0 else 0.0
+        t13 = t7*(t10*(1 - t11)*(1 - t12) + t6*(-t11 + t12))/t4
+        t14 = (stiffness*t5*t5*t8)/(t2*t2)
+        g[0] = -lam_1 + t13 + t9
+        g[1] = -given_a*t13 - given_a*t14 - given_a*t9
+        g[2] = -given_b*t13 - given_b*t14 - given_b*t9
+        g[3] = t3
         if task == VELOCITY:
             g[3] = -yds
         if task == ACCELERATION:
@@ -96,28 +99,30 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t900 = given_a*ywa
             t901 = given_b*ywb
             t902 = -material - t900 - t901 + ys
-            energies[STRAIN] += (stiffness*t902*t902/(2*material + 2*t900 + 2*t901) if t902 > 0.0
-                else 0.0)
+            energies[STRAIN] += (stiffness*t902*t902*(1.0 if t902 > 0.0 else 0.0)/(2*material +
+                2*t900 + 2*t901))
         if task == ENERGY:
             t900 = -given_a*ydwa - given_b*ydwb + yds
             t901 = given_a*ywa + given_b*ywb + material
             t902 = -t901 + ys
             t903 = damping*t900
             t904 = stiffness*t902
-            t905 = -t904
-            energies[POWERS + index[first + AT_PORT]] = (-t900*((t904 if t903 + t905 > 0.0 else
-                (t905 if -t903 - t904 > 0.0 else t903))/t901 if t902 > 0.0 else 0.0))
+            t905 = 1.0 if -t903 - t904 > 0.0 else 0.0
+            t906 = 1.0 if t903 - t904 > 0.0 else 0.0
+            energies[POWERS + index[first + AT_PORT]] = (-t900*(t903*(1 - t905)*(1 - t906) +
+                t904*(-t905 + t906))*(1.0 if t902 > 0.0 else 0.0)/t901)
         if task == ENERGY:
             t900 = given_a*ywa + given_b*ywb + material
             t901 = -t900 + ys
             t902 = damping*(-given_a*ydwa - given_b*ydwb + yds)
             t903 = stiffness*t901
-            t904 = -t903
-            t905 = ((t903 if t902 + t904 > 0.0 else (t904 if -t902 - t903 > 0.0 else t902))/t900
-                if t901 > 0.0 else 0.0)
-            g[0] = t905
-            g[1] = -given_a*t905
-            g[2] = -given_b*t905
+            t904 = 1.0 if -t902 - t903 > 0.0 else 0.0
+            t905 = 1.0 if t902 - t903 > 0.0 else 0.0
+            t906 = ((t902*(1 - t904)*(1 - t905) + t903*(-t904 + t905))*(1.0 if t901 > 0.0 else
+                0.0)/t900)
+            g[0] = t906
+            g[1] = -given_a*t906
+            g[2] = -given_b*t906
         if task == TANGENT:
             c_damping = coefficients[C_DAMPING]
             c_stiffness = coefficients[C_STIFFNESS]
@@ -137,36 +142,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uys = du[0]
                 uywa = du[1]
                 uywb = du[2]
-                t12 = given_a*ywa
-                t13 = given_b*ywb
-                t14 = material + t12 + t13
-                t15 = -t14 + ys
-                t16 = 1/t14
-                t17 = damping*(-given_a*ydwa - given_b*ydwb + yds)
-                t18 = stiffness*t15
-                t19 = -t18
-                t20 = t17 + t19
-                t21 = -t17 - t18
-                t22 = (c_damping*(t16*(0 if t20 > 0.0 else (0 if t21 > 0.0 else
-                    damping*(-given_a*uywa - given_b*uywb + uys))) if t15 > 0.0 else 0))
-                t23 = 2*material + 2*t12 + 2*t13
-                t24 = dywa*given_a
-                t25 = dywb*given_b
-                t26 = t24 + t25
-                t27 = stiffness*(dys - t26)
-                t28 = 2*t27/t23
-                t29 = 2*t24 + 2*t25
-                t30 = (2*t18)/(t23*t23)
-                t31 = -t29*t30
-                t32 = (t16*(t27 if t20 > 0.0 else (-t27 if t21 > 0.0 else 0)) + (-t26*(t18 if t20
-                    > 0.0 else (t19 if t21 > 0.0 else t17)))/(t14*t14) if t15 > 0.0 else 0)
-                t33 = (2*stiffness*t15*t15*(-4*t24 - 4*t25))/(t23*t23*t23)
-                t34 = t30*(2*dys - t29)
-                J[column] = c_stiffness*(t32 + (t28 + t31 if t15 > 0.0 else 0)) + t22
-                J[4 + column] = (c_stiffness*(-given_a*t32 + (-given_a*t28 - given_a*t31 -
-                    given_a*t33 - given_a*t34 if t15 > 0.0 else 0)) - given_a*t22)
-                J[8 + column] = (c_stiffness*(-given_b*t32 + (-given_b*t28 - given_b*t31 -
-                    given_b*t33 - given_b*t34 if t15 > 0.0 else 0)) - given_b*t22)
+                t15 = damping*(-given_a*ydwa - given_b*ydwb + yds)
+                t16 = given_a*ywa
+                t17 = given_b*ywb
+                t18 = material + t16 + t17
+                t19 = -t18 + ys
+                t20 = stiffness*t19
+                t21 = 1.0 if t15 - t20 > 0.0 else 0.0
+                t22 = 1.0 if -t15 - t20 > 0.0 else 0.0
+                t23 = (1 - t21)*(1 - t22)
+                t24 = 1.0 if t19 > 0.0 else 0.0
+                t25 = t24/t18
+                t26 = c_damping*damping*t23*t25*(-given_a*uywa - given_b*uywb + uys)
+                t27 = 2*material + 2*t16 + 2*t17
+                t28 = 2*t24
+                t29 = dywa*given_a
+                t30 = dywb*given_b
+                t31 = t29 + t30
+                t32 = stiffness*(dys - t31)
+                t33 = t28*t32/t27
+                t34 = 2*t29 + 2*t30
+                t35 = (t20*t28)/(t27*t27)
+                t36 = -t34*t35
+                t37 = t21 - t22
+                t38 = t25*t32*t37
+                t39 = (-t24*t31*(t15*t23 + t20*t37))/(t18*t18)
+                t40 = (stiffness*t19*t19*t28*(-4*t29 - 4*t30))/(t27*t27*t27)
+                t41 = t35*(2*dys - t34)
+                J[column] = c_stiffness*(t33 + t36 + t38 + t39) + t26
+                J[4 + column] = (c_stiffness*(-given_a*t33 - given_a*t36 - given_a*t38 -
+                    given_a*t39 - given_a*t40 - given_a*t41) - given_a*t26)
+                J[8 + column] = (c_stiffness*(-given_b*t33 - given_b*t36 - given_b*t38 -
+                    given_b*t39 - given_b*t40 - given_b*t41) - given_b*t26)
                 J[12 + column] = -c_constraint*dys
             J[3] = -c_constraint
             J[7] = 0.0

@@ -224,7 +224,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t943 = e1_a_y*t927
             t944 = e1_a_z*t932
             t945 = t942 + t943 + t944
-            t946 = t941*t945
             t947 = -aa_x + ab_x
             t948 = -aa_y + ab_y
             t949 = -aa_z + ab_z

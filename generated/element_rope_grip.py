@@ -218,7 +218,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t942 = e1_a_y*t926
             t943 = e1_a_z*t931
             t944 = t941 + t942 + t943
-            t945 = t940*t944
             t946 = -aa_x + ab_x
             t947 = -aa_y + ab_y
             t948 = -aa_z + ab_z

@@ -322,7 +322,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t952 = e1_a_y*t946
             t953 = e1_a_z*t948
             t954 = t951 + t952 + t953
-            t955 = t925*t954
             t956 = -t923
             t957 = (-t922*(2*t951 + 2*t952 + 2*t953) - t923*(2*t945 + 2*t947 + 2*t949))/(t924*t924)
             t958 = t900/t904
@@ -366,7 +365,6 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             t987 = e1_b_y*t981
             t988 = e1_b_z*t983
             t989 = t986 + t987 + t988
-            t990 = t966*t989
             t991 = -t964
             t992 = (-t963*(2*t986 + 2*t987 + 2*t988) - t964*(2*t980 + 2*t982 + 2*t984))/(t965*t965)
             g[12] = (arc_a*r_a*(t922*t925*(e2_a_x*t941 + e2_a_y*t942 + e2_a_z*t943) +

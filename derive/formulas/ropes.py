@@ -116,11 +116,11 @@ def rope(planar: bool) -> Element:
     s, a, b = (one.state.symbols[0] for one in blocks)
     material = start + by_a * a + by_b * b
     e = s - material
-    rate, elastic = differential(e, in_time(blocks)), stiffness * e
-    viscous = damping * rate
-    limited = choose(viscous - elastic, elastic, choose(-viscous - elastic, -elastic, viscous))
-    zero = sp.Float(0.0)
+    elastic, viscous = stiffness * e, damping * differential(e, in_time(blocks))
+    taut, above, below = (choose(one, sp.Float(1.0), sp.Float(0.0)) for one in (
+        e, viscous - elastic, -viscous - elastic))
+    limited = (above - below) * elastic + (1 - above) * (1 - below) * viscous
     return element("planar_" * planar + "rope", "law of a rope", space, blocks,
                    constants, constraints=[-s],
-                   strain=choose(e, stiffness * e**2 / (2 * material), zero),
-                   load=-choose(e, limited / material, zero) * differential(e, varied(blocks)))
+                   strain=taut * stiffness * e**2 / (2 * material),
+                   load=-taut * limited / material * differential(e, varied(blocks)))

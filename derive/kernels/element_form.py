@@ -110,10 +110,22 @@ def stored(expressions: Iterable[sp.Expr], targets: Sequence[Target], start: int
     temporaries, reduced = sp.cse(map(whole_turns, expressions),
                                   sp.numbered_symbols("t", start=start),
                                   order="canonical")
-    statements: list[Statement] = [Set((name,), (value,)) for name, value in temporaries]
+    statements: list[Statement] = [Set((name,), (value,)) for name, value in _used(temporaries,
+                                                                                   reduced)]
     statements += [Update(target, change, value) if change else Set((target,), (value,))
                    for target, value in zip(targets, reduced, strict=True)]
     return statements, start + len(temporaries)
+
+
+def _used(temporaries: Sequence[tuple[sp.Symbol, sp.Expr]], reduced: Sequence[sp.Expr]
+          ) -> list[tuple[sp.Symbol, sp.Expr]]:
+    """Common subexpressions without those that nothing reads: terms that use them may cancel."""
+    read, kept = used_symbols(reduced), []
+    for name, value in reversed(temporaries):
+        if name in read:
+            read |= value.free_symbols
+            kept.append((name, value))
+    return kept[::-1]
 
 
 def _task(name: str, expressions: Sequence[sp.Expr], targets: Sequence[Target],

@@ -173,6 +173,7 @@ def _holder(model: Mechanism, name: str, shares: Collection[str]) -> str | None:
             return _described(element)
     tables: dict[str, Collection[str]] = {
         "node": model.nodes, "sensor": model.sensors, "controller": model.controllers,
+        "sheave": model.sheaves,
         "signal": {out for one in model.controllers.values() for out in one.outputs}}
     return next((kind for kind, names in tables.items() if kind not in shares and name in names),
                 None)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
-from sebody.model.arguments import chosen_name, direction, dof_block, known
+from sebody.model.arguments import chosen_name, direction, dof_block, known, refuse_taken
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import (
@@ -63,6 +63,7 @@ def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
     what = f"sheave {name!r}"
     if name in model.sheaves:
         raise InputError(f"{what} is there already: give another name")
+    refuse_taken(model, name, "sheave")
     a = known(model, node)
     dof_block(a, "position")
     radius = inputs.number(radius, f"{what}: radius", above=0.0)
@@ -126,15 +127,14 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
     stiffness = inputs.number(stiffness, f"{what}: stiffness", above=0.0)
     damping = inputs.number(damping, f"{what}: damping", least=0.0)
     pretension = inputs.number(pretension, f"{what}: pretension", least=0.0)
+    if length is not None:
+        length = inputs.number(length, f"{what}: length", above=0.0)
+        if pretension:
+            raise InputError(f"{what} has a length and a pretension: leave one of them out")
     made, spans = spans_of(what, found, _signs(what, wrap, found))
     way = sum(span.length for span in spans) + sum(
         abs(place.radius) * place.wrap for place in made[1:-1])
-    if length is None:
-        material = way / (1.0 + pretension / stiffness)
-    elif pretension:
-        raise InputError(f"{what} has a length and a pretension: leave one of them out")
-    else:
-        material = inputs.number(length, f"{what}: length", above=0.0)
+    material = way / (1.0 + pretension / stiffness) if length is None else length
     name = chosen_name(model, name, ROPE)
     stretch = _stretch(model, name, made, spans, way, {
         "stiffness": stiffness, "damping": damping, "material": material})

@@ -1,7 +1,7 @@
 """Builders of a model refuse wrong arguments in words, and change nothing then."""
 
 import pytest
-from malformed import contact_cases, model_cases, path_cases
+from malformed import contact_cases, model_cases, path_cases, rope_cases
 from malformed.cases import alike, listed
 
 from sebody import InputError, Model
@@ -9,7 +9,8 @@ from sebody import InputError, Model
 SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
            | model_cases.CONTROL | contact_cases.CASES)
 MODELS = {**dict.fromkeys(SPATIAL, model_cases.spatial),
-          **dict.fromkeys(path_cases.CASES, path_cases.railway)}
+          **dict.fromkeys(path_cases.CASES, path_cases.railway),
+          **dict.fromkeys(rope_cases.CASES, rope_cases.hoist)}
 
 
 def described(model: Model) -> list:
@@ -18,7 +19,8 @@ def described(model: Model) -> list:
     parts += [[one.name for one in group] for group in (
         model.nodes.values(), model.bodies.values(), model.rigid_bodies.values(), model.joints,
         model.loads, model.grounds, model.sensors.values(),
-        model.controllers.values(), model.paths.values())]
+        model.controllers.values(), model.paths.values(), model.sheaves.values(),
+        model.ropes.values())]
     parts.append([id(one) for one in model.connections])
     for dof_block in model.dof_blocks():
         parts.append([dof_block.name, dof_block.fixed, dof_block.given, id(dof_block.root),
@@ -50,10 +52,15 @@ def test_paths(right, argument, value, said):
     refuse(path_cases.railway(), right, argument, value, said)
 
 
+@pytest.mark.parametrize("right, argument, value, said", listed(rope_cases.CASES))
+def test_ropes(right, argument, value, said):
+    refuse(rope_cases.hoist(), right, argument, value, said)
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_the_corrected_call_is_accepted(name):
     """In a notebook, say: after all refused ones, on the same model."""
-    right, model = (SPATIAL | path_cases.CASES)[name], MODELS[name]()
+    right, model = (SPATIAL | path_cases.CASES | rope_cases.CASES)[name], MODELS[name]()
     for argument, wrong in right.wrong.items():
         for value, _ in wrong:
             with pytest.raises(InputError):

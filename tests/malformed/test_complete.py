@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from malformed import contact_cases, model_cases, path_cases
+from malformed import contact_cases, model_cases, path_cases, rope_cases
 
 import sebody.generated
 from sebody import Model
@@ -43,7 +43,8 @@ def variants(right):
 def joints():
     """All joints that the right calls build, with the models they are in."""
     for make, cases in ((model_cases.spatial, SPATIAL), (model_cases.planar, model_cases.FLAT),
-                        (path_cases.railway, path_cases.CASES)):
+                        (path_cases.railway, path_cases.CASES),
+                        (rope_cases.hoist, rope_cases.CASES)):
         for right in cases.values():
             for arguments in variants(right):
                 model = make()
@@ -53,7 +54,8 @@ def joints():
 
 @pytest.mark.parametrize("name", BUILDERS)
 def test_every_builder_has_malformed_cases(name):
-    cases = [right for right in (SPATIAL | model_cases.FLAT | path_cases.CASES).values()
+    cases = [right for right in (SPATIAL | model_cases.FLAT | path_cases.CASES
+                                | rope_cases.CASES).values()
              if inspect.unwrap(right.function) is inspect.unwrap(getattr(Model, name))]
     assert cases, (f"Model.{name} has no malformed cases: add them to "
                    "tests/malformed/model_cases.py")

@@ -151,6 +151,7 @@ def element_head(given: Element, kernel: Kernel) -> Head:
     """Of a joint, rigid body or force."""
     multipliers, power = len(given.multipliers), given.power is not None
     known, planar = kernel.known, given.space.planar
+    driven = multipliers > 0 and power and _reads_amplitude(given)
     constants = [_part(constant) for constant in given.constants]
     return Head(
         f"Element kernel: {given.summary}",
@@ -167,7 +168,7 @@ def element_head(given: Element, kernel: Kernel) -> Head:
          *memory(name for name, _ in given.memory),
          f"INERTIAL = {bool(given.sums.get('kinetic'))}        # has kinetic energy",
          f"POWER = {power}        # does work on the system: a load, damper or drive",
-         f"DRIVEN = {multipliers > 0 and power and _reads_amplitude(given)}        # a constraint that depends on time",
+         f"DRIVEN = {driven}        # a constraint that depends on time",
          f"WORK_ROWS = {kernel.rows}", *operations(kernel)),
         (), (PART,) if constants else ())
 

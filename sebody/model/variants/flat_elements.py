@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Axes, Element, Joint, positions, rotations
+from sebody.model.parts import ROPE, Axes, Element, Joint, positions, rotations
 from sebody.model.variants.flat_contacts import LAWS, flat_places, sign_of_angle
+from sebody.model.variants.flat_ropes import ROPE_KINDS, rope_equation, sharing
 from sebody.model.variants.flattening import Flattening
 
 PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
@@ -85,6 +86,8 @@ def flat_joint(flat: Flattening, joint: Joint) -> Joint:
         equations = [Element(e.name, e.kind, e.attachments[::-1], e.constants, e.multipliers,
                              e.time_function)
                      for e in equations]
+    if joint.kind == ROPE:
+        equations = sharing(joint, equations)
     return Joint(joint.name, tuple(equations), node, to, _axes(flat, joint), joint.kind)
 
 
@@ -186,7 +189,7 @@ EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
     "parallel_ground": _parallel, "perpendicular": _perpendicular, "on_line": _on_line,
     "on_plane": _on_plane, "distance": _distance, "turn_drive": _turn_drive,
     "slide_drive": _slide_drive,
-    **{f"couple_{pair}": _coupling for pair in ("turn_turn", "slide_turn", "slide_slide")}}
+    **{f"couple_{pair}": _coupling for pair in ("turn_turn", "slide_turn", "slide_slide"), **dict.fromkeys(ROPE_KINDS, rope_equation)}
 
 
 # rigid bodies, loads and springs

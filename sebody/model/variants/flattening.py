@@ -78,8 +78,9 @@ class Flattening:
     def node(self, node: Node) -> Node:
         """The planar node, the same for the same node."""
         if node not in self._nodes:
+            hidden = not node.point.size        # the node of an unknown of a rope
             self._nodes[node] = Node(
-                node.name, self.point(node.point, f"node {node.name!r}"),
+                node.name, node.point if hidden else self.point(node.point, f"node {node.name!r}"),
                 *(None if dof_block is None else self.dof_block(dof_block)
                   for dof_block in (node.position, node.rotation)))
         return self._nodes[node]
@@ -94,6 +95,8 @@ class Flattening:
             what = f"initial velocity of {dof_block.name}"
             if dof_block.rotational:
                 start, rate = np.zeros(1), np.array([self.axial(dof_block.rate, what)])
+            elif _hidden(dof_block):
+                start, rate = dof_block.start, dof_block.rate
             else:
                 start = self.point(dof_block.start, dof_block.name)
                 rate = self.vector(dof_block.rate, what)
@@ -111,6 +114,13 @@ class Flattening:
     def motion(self, motion: Motion) -> Motion:
         """The planar prescribed motion."""
         what = f"the direction of {motion.name!r}"
+        if _hidden(motion.place.dof_block):
+            return motion._replace(place=self.place(motion.place))
         direction = (np.array([self.axial(motion.direction, what)])
                      if motion.place.kind == "rotation" else self.vector(motion.direction, what))
         return motion._replace(direction=direction, place=self.place(motion.place))
+
+
+def _hidden(dof_block: DofBlock) -> bool:
+    """Tell whether a block is one unknown that is no coordinate of a place."""
+    return not dof_block.rotational and dof_block.start.size == 1

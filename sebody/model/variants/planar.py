@@ -22,6 +22,7 @@ from sebody.model.variants.flat_bodies import flat_bodies
 from sebody.model.variants.flat_contacts import flat_point_contact
 from sebody.model.variants.flat_control import add_control
 from sebody.model.variants.flat_elements import check_joints, flat_element, flat_joint
+from sebody.model.variants.flat_ropes import flat_ropes
 from sebody.model.variants.flattening import Flattening
 from sebody.reduction.plane import PlanarBody
 from sebody.reduction.summary import place
@@ -100,11 +101,14 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
     driven = [joint.axis for joint in model.joints if any(
         c.kind == "turn_drive" for c in joint.constraints)]
     axial = [joint.axis for joint in model.joints if joint.kind in _NORMAL]
+    axial += [sheave.axis for sheave in model.sheaves.values()]
     axial += [one.direction for one in model.loads if "torque" in one.kind]
     inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
     inside += [model.gravity_field]
     inside += [one.direction for one in model.loads if one.kind in ("force", "follower_force")]
     for dof_block in model.dof_blocks():
+        if dof_block.start.size == 1:       # a length of a rope
+            continue
         own = [dof_block.rate, *(motion.direction for motion in dof_block.motions)]
         (axial if dof_block.rotational else inside).extend(own)
     rows = [v / np.linalg.norm(v) for v in inside if np.any(v)]
@@ -150,6 +154,7 @@ class _Flat(NamedTuple):
             flat.dof_block(dof_block).motions = [flat.motion(motion)
                                                  for motion in dof_block.motions]
         made.joints = [flat_joint(flat, joint) for joint in model.joints]
+        flat_ropes(flat, model, made)
         made.rigid_bodies = {name: flat_element(flat, one)
                              for name, one in model.rigid_bodies.items()}
         joints = dict(zip(model.joints, made.joints, strict=True))

@@ -1,0 +1,198 @@
+"""Ropes over points and sheaves against closed forms and other ways to compute them."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
+
+from sebody import InputError, Model, simulate
+from sebody.analysis import equilibrium
+from sebody.model.variants import planar
+
+TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
+AT = np.array([2.0, -1.0, 0.5])
+G = 9.81
+
+
+def turned(x, y, z=0.0):
+    """A place of the plane of the drawing, in general position."""
+    return AT + TURN @ (x, y, z)
+
+
+def hung(points, masses, sheaves=(), flat=False):
+    """Point masses and fixed nodes in a turned plane, or in that of a planar model."""
+    model = Model(planar=flat)
+    for name, point in points.items():
+        model.node(name, point if flat else turned(*point), "full" if name in sheaves else
+                   "translation")
+        if name in masses:
+            model.point_mass(f"mass of {name}", name, masses[name])
+        else:
+            model.fix(name, *[] if name in sheaves else ["position"])
+    for name in sheaves:
+        model.sheave(f"wheel {name}", name, sheaves[name], **({} if flat else {
+            "axis": TURN[:, 2]}))
+    model.gravity((0, -G) if flat else TURN @ (0, -G, 0))
+    return model
+
+
+def heights(model, result, name):
+    """Height of a node above the origin of the drawing."""
+    place = result[f"{name}.position"]
+    if model.plane is not None:
+        place = model.plane.to_space(f"{name}.position", place)
+    return place[:, 1] if place.shape[1] == 2 else (place - AT) @ TURN[:, 1]
+
+
+@pytest.mark.parametrize("form", ["space", "plane", "planar form"])
+def test_machine_of_atwood(form):
+    """Over a sheave without mass: the acceleration is constant, and so is the tension."""
+    masses, pull = {"a": 3.0, "b": 1.2}, 2 * G * 3.0 * 1.2 / 4.2
+    model = hung({"p": (0, 0), "a": (-0.2, -1), "b": (0.2, -4)}, masses, {"p": 0.2},
+                 form == "plane")
+    model.rope("rope", ("a", "wheel p", "b"), stiffness=1e6, pretension=pull, wrap="-")
+    if form == "planar form":
+        model = planar(model).model
+    result = simulate(model, 0.01, 0.8)
+    sunk = 0.5 * G * (3.0 - 1.2) / 4.2 * result.t**2
+    for name, start, way in (("a", -1.0, -sunk), ("b", -4.0, sunk)):
+        assert heights(model, result, name) == pytest.approx(start + way, abs=1e-10)
+    assert result["rope.tension"] == pytest.approx(np.full((len(result.t), 2), pull), rel=1e-9)
+    assert result["rope.length"] == pytest.approx(5.0 + 0.2 * np.pi, rel=1e-12)
+
+
+def tangent_length(points, radii, signs):
+    """Length of a rope past circles, by tangents that are found as zeros of their angles."""
+    def contact(k, angle):
+        """Where a rope that travels along an angle touches circle k."""
+        return points[k] + radii[k] * signs[k] * np.array([np.sin(angle), -np.cos(angle)])
+
+    angles = []
+    for k in range(len(points) - 1):
+        d = points[k + 1] - points[k]
+        middle = np.arctan2(d[1], d[0])
+
+        def off(angle, k=k):
+            gap = contact(k + 1, angle) - contact(k, angle)
+            return gap[0] * np.sin(angle) - gap[1] * np.cos(angle)
+        angles.append(brentq(off, middle - 1.5, middle + 1.5, xtol=1e-15))
+    total = sum(np.linalg.norm(contact(k + 1, a) - contact(k, a)) for k, a in enumerate(angles))
+    for k in range(1, len(points) - 1):
+        total += radii[k] * ((signs[k] * (angles[k] - angles[k - 1])) % (2 * np.pi)) if (
+            radii[k]) else 0.0
+    return total
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_length_and_force_past_sheaves_and_a_ring(flat):
+    """Against tangents found by bisection; the force on a node is the slope of the energy."""
+    places = {"a": (-2.0, -1.0), "p": (-1.0, 1.0), "q": (0.6, 0.2), "r": (2.0, 1.4),
+              "s": (3.0, -0.5), "b": (4.5, 0.3)}
+    radii, sides = [0, 0.3, 0.25, 0, 0.4, 0], [0, -1, 1, 0, 1, 0]
+    stiffness, length = 2e4, 9.9
+    model = hung(places, {"b": 40.0}, {"p": 0.3, "q": 0.25, "s": 0.4}, flat)
+    model.rope("rope", ("a", "wheel p", "wheel q", "r", "wheel s", "b"), stiffness,
+               length=length, wrap="-++")
+    result = simulate(model, 0.002, 0.3)
+    points = np.array(list(places.values()))
+
+    def way(end):
+        return tangent_length(np.vstack([points[:-1], end]), radii, sides)
+    for k in (0, 40, 90):
+        place = result["b.position"][k]
+        end = place if flat else (TURN.T @ (place - AT))[:2]
+        assert result["rope.length"][k] == pytest.approx(way(end), rel=1e-10)
+        tension = max(stiffness * (way(end) / length - 1), 0.0)
+        assert result["rope.tension"][k] == pytest.approx(np.full(5, tension), rel=1e-9)
+        slope = np.array([way(end + d) - way(end - d) for d in 1e-6 * np.eye(2)]) / 2e-6
+        force = result["b.acceleration"][k]
+        if not flat:
+            force = (TURN.T @ force)[:2]
+        assert force == pytest.approx(-tension * slope / 40 + (0, -G), abs=1e-7 * tension)
+    assert result["energy.external_work"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_slack_and_taut_again():
+    """A mass falls freely until its rope is taut, and then moves as on a spring.
+
+    Without damping energy is kept; the speed at which the rope becomes slack again is the same.
+    """
+    mass, stiffness, length, drop = 2.0, 4e3, 1.5, 0.5
+    model = hung({"p": (0, 0), "a": (0, -drop)}, {"a": mass})
+    model.rope("rope", ("p", "a"), stiffness, length=length)
+    result = simulate(model, 2e-4, 1.2)
+    k = stiffness / length
+    t1 = np.sqrt(2 * (length - drop) / G)
+    v1, w, sag = G * t1, np.sqrt(k / mass), mass * G / k
+    t = result.t
+    fall = drop + G * t**2 / 2
+    t_up = t1 + 2 / w * (np.pi - np.arctan2(v1 / w, sag))
+    y = np.where(t < t1, fall, length + sag * (1 - np.cos(w * (t - t1)))
+                 + v1 / w * np.sin(w * (t - t1)))
+    y = np.where(t < t_up, y, length - v1 * (t - t_up) + G * (t - t_up)**2 / 2)
+    assert -heights(model, result, "a") == pytest.approx(y, abs=2e-4)
+    slack = result["rope.elongation"] < 0
+    assert slack[0] and slack[-1] and not slack.all()
+    assert result["rope.tension"][slack] == pytest.approx(0.0, abs=1e-9)
+    assert (result["rope.tension"][~slack] >= -1e-9).all()
+    energy = sum(result[f"energy.{kind}"] for kind in ("kinetic", "strain", "potential"))
+    assert energy == pytest.approx(energy[0], abs=2e-4 * mass * G)
+
+
+def test_drum_winds_its_rope():
+    """A drum that a drive turns: what it takes up lifts the load, and the work is the energy."""
+    mass, radius, stiffness = 5.0, 0.25, 3e5
+    model = Model()
+    model.node("hub", AT)
+    model.rigid_body("drum", "hub", 4.0, (0.2, 0.2, 0.1))
+    model.revolute("hub", TURN[:, 2], name="axle")
+    model.node("load", turned(radius, -6.0), "translation")
+    model.point_mass("mass", "load", mass)
+    model.gravity(TURN @ (0, -G, 0))
+    model.sheave("barrel", "hub", radius, axis=TURN[:, 2])
+    model.rope("rope", ("barrel", "load"), stiffness, damping=300.0, pretension=mass * G, wrap="-")
+    turn = 20.0     # rad, more than three turns
+    model.drive_angle("axle", lambda t: 20.0 * (t / 4.0)**3 * (10 - 15 * t / 4 + 6 * (t / 4)**2),
+                      name="motor")
+    result = simulate(model, 2e-3, 4.0)
+    free = result["rope.length"] - result["rope.elongation"]
+    assert free[0] - free[-1] == pytest.approx(turn * radius, rel=1e-4)
+    energy = sum(result[f"energy.{kind}"] for kind in ("kinetic", "strain", "potential"))
+    supplied = result["motor.work"] + result["rope.work"]
+
+    assert energy - energy[0] == pytest.approx(supplied, abs=1e-8 * mass * G * turn * radius)
+    lifted = heights(model, result, "load")
+    assert lifted[-1] - lifted[0] == pytest.approx(turn * radius, rel=2e-4)
+
+
+def test_equilibrium_of_a_hanging_ring():
+    """A ring with a weight on a rope between two points: the way is the shortest for its sag."""
+    model = hung({"a": (-1, 0), "ring": (0.4, -1.0), "b": (1, 0.3)}, {"ring": 20.0})
+    model.rope("rope", ("a", "ring", "b"), 5e4, length=2.8)
+    found = equilibrium(model)
+    a, b, ring = (TURN.T @ (p - AT) for p in (
+        model.nodes["a"].point, model.nodes["b"].point, found["ring.position"][-1]))
+    one, other = (a - ring) / np.linalg.norm(a - ring), (b - ring) / np.linalg.norm(b - ring)
+    pull = 20.0 * G / (one + other)[1]
+    assert found["rope.tension"][-1] == pytest.approx([pull, pull], rel=1e-8)
+    assert (one + other)[0] == pytest.approx(0.0, abs=1e-9)
+    assert found["rope.elongation"][-1] == pytest.approx(2.8 * pull / 5e4, rel=1e-7)
+
+
+@pytest.mark.parametrize("places, wrap, said", [
+    (("a", "wheel p", "b"), "*", "give '+' or '-', or one of them for each of its 1 sheaves"),
+    (("a", "wheel p", "b"), "+-", "give '+' or '-', or one of them for each of its 1 sheaves"),
+    (("a",), "+", "rope 'rope' has 1 place: give the nodes and sheaves"),
+    (("a", "q"), "+", "node or sheave 'q' is unknown"),
+    (("a", "a", "b"), "+", "'a' and 'a' are at one point"),
+    (("p", "wheel p"), "+", "'p' and 'wheel p' are at one point"),
+    (("near", "wheel p"), "+", "'near' and 'wheel p' are 0.1 apart and overlap"),
+    (("off", "wheel p"), "+", "it leaves the plane of sheave 'wheel p' by"),
+    (("wheel p", "wheel t"), "+", "have axes that are not parallel")])
+def test_refused(places, wrap, said):
+    model = hung({"a": (-1, 0), "b": (1, 0), "p": (0, 1), "near": (0.1, 1), "off": (1, 1, 0.4),
+                  "t": (2, 1)}, {}, {"p": 0.2})
+    model.sheave("wheel t", "t", 0.1, axis=TURN[:, 1])
+    with pytest.raises(InputError) as caught:
+        model.rope("rope", places, 1e5, wrap=wrap)
+    assert said in str(caught.value)
