@@ -79,7 +79,7 @@ def _straight(what: str, a: RopePlace, b: RopePlace) -> tuple[float, NDArray]:
                          "lie apart")
     for one in (a, b):
         if one.sheave is not None and abs(one.normal @ d) > OFF * distance:
-            off = np.degrees(np.arcsin(min(abs(one.normal @ d) / distance, 1.0)))
+            off = np.degrees(np.arcsin(min(float(abs(one.normal @ d)) / distance, 1.0)))
             raise InputError(f"{what}: from {names[0]} to {names[1]} it leaves the plane of sheave "
                              f"{one.sheave.name!r} by {off:.3g} degrees: turn the axis of the "
                              "sheave, or move one of the nodes")

@@ -145,7 +145,8 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
     return model.ropes[name]
 
 
-def _place(model: Mechanism, what: str, place: object) -> tuple[Node, Sheave | None]:
+def _place(model: Mechanism, what: str, place: Node | Sheave | str
+           ) -> tuple[Node, Sheave | None]:
     if isinstance(place, Sheave):
         if model.sheaves.get(place.name) is not place:
             raise InputError(f"{what}: sheave {place.name!r} is of another model: use that of this "

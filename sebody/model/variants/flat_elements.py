@@ -189,7 +189,8 @@ EQUATIONS: dict[str, Callable[[Flattening, Joint, Element], Element | None]] = {
     "parallel_ground": _parallel, "perpendicular": _perpendicular, "on_line": _on_line,
     "on_plane": _on_plane, "distance": _distance, "turn_drive": _turn_drive,
     "slide_drive": _slide_drive,
-    **{f"couple_{pair}": _coupling for pair in ("turn_turn", "slide_turn", "slide_slide"), **dict.fromkeys(ROPE_KINDS, rope_equation)}
+    **{f"couple_{pair}": _coupling for pair in ("turn_turn", "slide_turn", "slide_slide")},
+    **dict.fromkeys(ROPE_KINDS, rope_equation)}
 
 
 # rigid bodies, loads and springs
