@@ -8,6 +8,7 @@ import numpy as np
 from sebody.basics.tabular import counted, table, text, vector
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock, Element, Node
+from sebody.model.path_shapes import cautions
 from sebody.model.shafts import is_unbalance
 from sebody.model.ties import untied
 
@@ -54,6 +55,7 @@ def described(model: Mechanism) -> str:
              f"mass      {sum(masses):.6g}"]
     if loose := [name for group in untied(model) for name in group]:
         lines.append("free      " + ", ".join(loose) + ": not connected to the ground")
+    lines += [f"caution   {one}" for path in model.paths.values() for one in cautions(model, path)]
     return "\n\n".join(["\n".join(lines), *(text(*one) for one in _tables(model))])
 
 
