@@ -83,6 +83,12 @@ def line(one: NDArray, other: NDArray) -> Shape:
     return Shape(np.array([one, other]), np.array([[0, 1]]), _none())
 
 
+def polyline(points: NDArray) -> Shape:
+    """Lines from each point to the next."""
+    first = np.arange(len(points) - 1)
+    return Shape(points, np.column_stack([first, first + 1]), _none())
+
+
 def across_of(axis: NDArray) -> tuple[NDArray, NDArray]:
     """Two directions at right angles to an axis and to each other."""
     side = np.cross(np.eye(3)[np.argmin(np.abs(axis))], axis)

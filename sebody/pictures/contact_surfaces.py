@@ -1,6 +1,6 @@
-"""Contact surfaces, stops and gears of a picture: where they are, and what carries them."""
+"""Contact surfaces, stops, gears and curves of a picture: where they are, and what carries them."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -20,11 +20,13 @@ from sebody.pictures.contact_shapes import (
     joined,
     line,
     patch,
+    polyline,
     sector,
     tube,
 )
 from sebody.pictures.drawn_nodes import DrawnNode
 from sebody.pictures.gear_wheels import PARALLEL, belt, gearing, pinion, thread, wheel
+from sebody.pictures.path_curves import path_curves
 from sebody.pictures.surface import spatial
 
 AROUND_CONTACT = 0.3, 0.1       # margin of surfaces of the ground, of bodies; of the extent
@@ -86,7 +88,16 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
     make = disc if model.planar else ball
     return [*(_plane(model, touching, size) for touching in planes.values()), *surfaces,
             *(ContactSurface(name, "ball", node, make(radius))
-              for (node, radius), name in balls.items())]
+              for (node, radius), name in balls.items()), *_curves(model, nodes, size)]
+
+
+def _curves(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float
+            ) -> Iterator[ContactSurface]:
+    for name, node, points in path_curves(model, size):
+        carrier = _carrier(model, node)
+        if carrier is None or carrier in nodes:
+            yield ContactSurface(name, "curve", carrier, polyline(
+                points if carrier is None else points - spatial(node.point)))
 
 
 def vertices_of(one: ContactSurface, nodes: Mapping[str, DrawnNode], frame: int) -> NDArray:
