@@ -82,7 +82,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
         address=np.array([batch.kernel.kernel.address for batch in batches.all]),
         index=np.array([i for batch in batches.all for row in batch.rows for i in row]),
         constants=batches.constants, rotation_at=_rotation_starts(numbering),
-        routines=np.zeros(4, dtype=np.int64),
+        aid=np.zeros(2, dtype=np.int64), routines=np.zeros(4, dtype=np.int64),
         dimension=np.array([model.dimension]), part=_parts(model, numbering),
         inertias=np.zeros(numbering.total), massless_axes=np.zeros(numbering.total),
         magnitude=_magnitude(model, numbering),

@@ -28,6 +28,12 @@ def call_advance_together(typingctx, address, system, state, scratch, alone, tog
 
 
 @intrinsic
+def call_aid(typingctx, address, context, what):
+    """Call the aid of a loop at its address, see `sebody.engine.aid`."""
+    return types.int64(types.int64, types.int64, types.int64), called
+
+
+@intrinsic
 def call_refactorize(typingctx, address, system, state, wanted, dense):
     """Call `sebody.engine.matrix.refactorize` at its address."""
     return types.boolean(types.int64, system, state, types.int64, types.boolean), called

@@ -29,7 +29,6 @@ CLOCK = np.dtype([(name, np.float64) for name in (
 )])
 # fields of State.control
 CONTROL = np.dtype([(name, np.int64) for name in (
-    "phase",                 # where the loop continues: BEGIN to SOLVED
     "grid",                  # output steps completed
     "unit",                  # parts of the next output step completed, of FINEST
     "level",                 # how often the output step is halved

@@ -9,6 +9,7 @@ import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.engine.actuator_inputs import FROM, SINCE, VALUE, input_at
+from sebody.engine.aid import aided
 from sebody.engine.control_data import (
     APPLY,
     AT_FACTORS,
@@ -25,7 +26,6 @@ from sebody.engine.control_data import (
     FIRST_WIRE,
     FUNCTION,
     GAIN,
-    HAS,
     ITS_DELAY,
     ITS_QUEUE,
     LATER,
@@ -41,14 +41,14 @@ from sebody.engine.control_data import (
     SLOT,
     STATES,
     STOP,
-    WAITS,
     WIRES,
 )
 from sebody.engine.state import (
     BAD_CONTROL,
     DONE,
     FAILED,
-    READ,
+    NO_AID,
+    READINGS,
     SAMPLED,
 )
 from sebody.engine.step_control import NEAR
@@ -58,13 +58,12 @@ from sebody.kernels.tapes import play
 
 @compiled
 def sample(system, state):
-    """Sample what is due at the time reached; DONE, FAILED, or READ for Python to read sensors."""
+    """Sample what is due at the time reached; DONE or FAILED."""
     control, memory, t = system.control, state.memory, state.clock.time
     near = NEAR * state.clock.step
-    if control.outside[0] == 1 and memory[HAS] == 0.0:
-        memory[WAITS] = 1.0
-        return READ
-    memory[WAITS] = memory[HAS] = 0.0
+    if control.outside[0] == 1 and not aided(system, READINGS):
+        state.control.reason = NO_AID
+        return FAILED
     changed = False
     for k in range(control.periods.size):
         if memory[COUNTS + k] * control.periods[k] + control.offsets[k] > t + near:

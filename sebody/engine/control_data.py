@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from sebody.engine.arrays import Arrays
 
 # numbers of a row of `Control.sensors`: where its value is in State.frames; its delay in samples;
-# its queue in State.memory; of its tape the place of the quantity, 0 where Python has to read it,
+# its queue in State.memory; of its tape the place of the quantity, 0 where the loop's aid reads it,
 # the place of the first number in State.memory, first and end of what it reads, and where its
 # steps, their factors and weights begin
 (SLOT, DELAY, QUEUE, OUTPUT, NUMBERS, FIRST_READ, END_READ, AT_STEPS, AT_FACTORS,
@@ -17,11 +17,10 @@ SENSOR, APPLY, CONTROLLER = range(3)    # kinds of tasks; APPLY sets outputs of 
 # numbers of a row of `Control.controllers`
 (FUNCTION, FIRST_WIRE, WIRES, FIRST_END, ENDS, STATES, PARAMETERS, ITS_DELAY, ITS_QUEUE,
  SCRATCH, LATER) = range(11)
-# State.memory: the next sample; the next stop that Python asked for; whether it waits for readings
-# of Python and whether it has them; the controller with a fault; then of every task its samples so
-# far, of every sensor its reading by Python and its readings so far, then numbers of tapes, queues
-# and scratch memory
-NEXT, STOP, WAITS, HAS, FAULTY = range(5)
+# State.memory: the next sample; the next stop that Python asked for; the controller with a fault;
+# then of every task its samples so far, of every sensor its reading by the aid and its readings so
+# far, then numbers of tapes, queues and scratch memory
+NEXT, STOP, FAULTY = range(3)
 COUNTS = FAULTY + 1
 NEVER = -1.0            # time of a stop that there is none: of ordinary size, for ensembles
 
@@ -48,7 +47,7 @@ class Control(Arrays):
     inputs          (i, 3) port, place in `State.frames`, row of `System.table_pieces`
     limits          (i, 2) least and largest value; none where the largest is below the least
     parameters      of all controllers
-    outside         (1,) 1 where Python has to read a sensor
+    outside         (1,) 1 where the aid of the loop has to read a sensor
     flowing         (f,) places in `State.frames` that continuous controllers set
     read            (1,) 1 where continuous controllers read what is sampled
     memory          (1,) length of `State.memory`

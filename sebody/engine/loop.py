@@ -1,14 +1,14 @@
 """The compiled time loop: generalized-alpha on the Lie group, modified Newton, step control.
 
 One loop for every scene: it works on flat arrays, returns a code and can be called again to go on.
-Where the matrix needs row exchanges, it returns FACTOR and SOLVE: the caller calls
-`row_exchanges.exchange`, makes room for factors if asked, and calls the loop again.
+What it lacks, such as factors with row exchanges, it asks its aid for, see `sebody.engine.aid`.
 """
 
 import numpy as np
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
+from sebody.engine.aid import aided
 from sebody.engine.calls import call_refactorize, call_restart, call_sample, call_share
 from sebody.engine.control_data import NEXT
 from sebody.engine.evaluate import (
@@ -31,32 +31,27 @@ from sebody.engine.newton import (
     want_matrix,
 )
 from sebody.engine.state import (
-    BEGIN,
     CHUNK,
     CONTACT,
     CONVERGED,
     DONE,
     EVALUATED,
-    FACTOR,
-    FACTORED,
+    FACTORS,
     FAILED,
     GAP,
     GIVE_UP,
+    GO_ON,
     GROWS,
     INACCURATE,
-    ITERATE,
     KEPT,
     LEAVES_GAP,
     NEW_MATRIX,
+    NO_AID,
     NO_REASON,
     NOT_FINITE,
-    PROJECT,
-    PROJECTED,
-    READY,
     SHARE_MOVED,
     SLOW,
-    SOLVE,
-    SOLVED,
+    SOLUTION,
 )
 from sebody.engine.step import accept, back, begin_step, cut_step, renew_bodies, write_record
 from sebody.engine.step_control import (
@@ -79,28 +74,19 @@ def lead(scheme):
 
 @compiled(nogil=True)
 def advance(system, state, record, scheme, last_grid, chunk, dense):
-    """Run until `last_grid`, for at most `chunk` steps, or until the caller factorizes or solves.
+    """Run until `last_grid` or for at most `chunk` steps; returns DONE, CHUNK or FAILED.
 
     Other threads of Python run meanwhile: no two simulations write to the same memory.
     """
     control = state.control
-    mixed = not dense and not scheme.stabilized
     ahead = lead(scheme)
     steps = 0
-    reason = np.int64(NO_REASON)
     while True:
-        if reason != NO_REASON:
-            control.reason = reason
-            back(state)
-            if reason == INACCURATE or not cut_step(state):     # an inaccurate step is cut already
-                return FAILED
-            reason = np.int64(NO_REASON)
-        if control.phase == BEGIN and control.adaptive == 1:
+        if control.adaptive == 1:
             write_between(system, state, record, last_grid)
         if control.restart != 0:
             code = np.int64(DONE)
-            if control.phase == BEGIN and (
-                    0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step):
+            if 0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step:
                 code = call_sample(system.routines[2], system, state)
             if code == DONE and control.restart != 0:
                 code = call_restart(system.routines[1], system, state, ahead, dense)
@@ -109,49 +95,69 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
             if control.due == 1:
                 write_record(state, record)
             continue
-        if control.phase == BEGIN:
-            if control.grid >= last_grid:
-                return DONE
-            if steps >= chunk:
-                return CHUNK
-            steps += 1
-            if control.adaptive == 1:
-                choose_step(system, state)
-            elif system.corners.size > 0:
-                choose_part(system, state)
-            renew_bodies(system, state, scheme)
-            begin_step(system, state, scheme)
-            begin_with_matrix(state)
-            control.phase = ITERATE
-        if control.phase == ITERATE:
-            wanted = control.wanted
-            reason = _evaluate(system, state, scheme, wanted, mixed)
-            if reason != NO_REASON:
-                continue
-            control.phase = FACTORED
-            if wanted != KEPT:
-                count_matrix(state, wanted)
-                if not call_refactorize(system.routines[0], system, state, wanted, dense):
-                    reason = np.int64(NOT_FINITE)
-                    continue
-                if control.pivoted == 1:
-                    return FACTOR
-        if control.phase == FACTORED:
-            control.phase = READY
-            if scheme.stabilized:
-                swap(state.residual, state.constraint_residuals)
-                control.phase = PROJECT
-        if control.phase == PROJECT or control.phase == READY:
-            control.phase = PROJECTED if control.phase == PROJECT else SOLVED
-            if control.pivoted == 1:
-                return SOLVE
-            solve(system, state, dense)     # the only call: with two calls it would not be inlined
-        if control.phase == PROJECTED:
-            take_shift(system, state)
-            control.phase = READY
-            continue
+        if control.grid >= last_grid:
+            return DONE
+        if steps >= chunk:
+            return CHUNK
+        steps += 1
+        if control.adaptive == 1:
+            choose_step(system, state)
+        elif system.corners.size > 0:
+            choose_part(system, state)
+        renew_bodies(system, state, scheme)
+        begin_step(system, state, scheme)
+        begin_with_matrix(state)
+        reason = _iterate(system, state, record, scheme, dense)
+        if reason != NO_REASON:
+            control.reason = reason
+            back(state)
+            # an inaccurate step is cut already
+            if reason == INACCURATE or reason == NO_AID or not cut_step(state):
+                return FAILED
+
+
+@compiled(forceinline=True)
+def _iterate(system, state, record, scheme, dense):
+    """Newton's iteration of a step; returns why it failed.
+
+    With NO_REASON the step is accepted, or the state is back where it was to be made anew.
+    """
+    control = state.control
+    mixed = not dense and not scheme.stabilized
+    while True:
+        wanted = control.wanted
+        status = _evaluate(system, state, scheme, wanted, mixed)
+        if status != NO_REASON:
+            return np.int64(status)
+        if wanted != KEPT:
+            count_matrix(state, wanted)
+            if not call_refactorize(system.routines[0], system, state, wanted, dense):
+                return np.int64(NOT_FINITE)
+            if control.pivoted == 1 and not aided(system, FACTORS):
+                return np.int64(NO_AID)
+        if not _solve(system, state, scheme.stabilized, dense):
+            return np.int64(NO_AID)
         verdict = correct(system, state, scheme, True, control.iteration, mixed)
         reason = np.int64(_conclude(system, state, record, scheme, verdict))
+        if verdict != GO_ON and verdict != NEW_MATRIX:
+            return reason
+
+
+@compiled(forceinline=True)
+def _solve(system, state, shifts, dense):
+    """Solve for the correction, with index 2 for the shift of positions first; False without aid.
+    """
+    if shifts:
+        swap(state.residual, state.constraint_residuals)
+    while True:
+        if state.control.pivoted == 0:
+            solve(system, state, dense)     # the only call: with two calls it would not be inlined
+        elif not aided(system, SOLUTION):
+            return False
+        if not shifts:
+            return True
+        take_shift(system, state)
+        shifts = False
 
 
 @compiled(forceinline=True)
@@ -189,7 +195,6 @@ def _evaluate(system, state, scheme, wanted, mixed):
 def _conclude(system, state, record, scheme, verdict):
     """Act on the verdict about a correction; returns the reason if the step fails."""
     control, clock = state.control, state.clock
-    control.phase = ITERATE
     if verdict == CONVERGED:
         if system.guarded.size > 0 and contact_too_fast(system, state):
             return CONTACT
@@ -204,7 +209,6 @@ def _conclude(system, state, record, scheme, verdict):
             take_back_work(state)
             return GROWS
         accept(system, state, record)
-        control.phase = BEGIN
     elif verdict == NEW_MATRIX:
         want_matrix(system, state, True)
     elif verdict == GIVE_UP or verdict == LEAVES_GAP:

@@ -24,6 +24,7 @@ from sebody.contract.layout import (
     RESIDUAL,
     TANGENT,
 )
+from sebody.engine.aid import aided
 from sebody.engine.calls import call_refactorize
 from sebody.engine.evaluate import (
     move_prescribed,
@@ -41,17 +42,15 @@ from sebody.engine.selection import any_true, either
 from sebody.engine.state import (
     AHEAD,
     ASKED,
-    BEGIN,
     DONE,
     EVALUATED,
-    FACTOR,
-    FACTORED,
+    FACTORS,
     FAILED,
-    ITERATE,
+    GO_ON,
     KEPT,
+    NO_AID,
     NO_START,
-    SOLVE,
-    SOLVED,
+    SOLUTION,
 )
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
@@ -82,28 +81,21 @@ def restart(system, state, lead, dense):
     Returns
     -------
     int
-        DONE; FAILED with a reason; FACTOR or SOLVE for the caller to do so and call again.
+        DONE, or FAILED with a reason.
     """
     control = state.control
+    _begin(system, state, lead)
     while True:
-        if control.phase == BEGIN:
-            _begin(system, state, lead)
-            control.phase = ITERATE
-        if control.phase == ITERATE:
-            wanted = control.wanted
-            status = _evaluate(system, state, wanted)
-            if status != OK:
-                return _fail(system, state, status)
-            control.phase = FACTORED
-            if wanted != KEPT:
-                if not _factorize(system, state, dense):
-                    return FACTOR
-        if control.phase == FACTORED:
-            control.phase = SOLVED
-            if control.pivoted == 1:
-                return SOLVE
+        wanted = control.wanted
+        status = _evaluate(system, state, wanted)
+        if status != OK:
+            return _fail(system, state, status)
+        if wanted != KEPT and not _factorize(system, state, dense):
+            return _fail(system, state, NO_AID)
+        if control.pivoted == 0:
             solve(system, state, dense)
-        control.phase = ITERATE
+        elif not aided(system, SOLUTION):
+            return _fail(system, state, NO_AID)
         if control.restart == AHEAD:
             _take_rates(system, state, lead)
             return _end(system, state)
@@ -120,7 +112,7 @@ def restart(system, state, lead, dense):
 
 @compiled
 def _factorize(system, state, dense):
-    """Factorize masses and constraints; False where row exchanges are needed."""
+    """Factorize masses and constraints; False where there is no aid for row exchanges."""
     control = state.control
     control.wanted = KEPT
     control.fresh += 1
@@ -128,7 +120,7 @@ def _factorize(system, state, dense):
     done = call_refactorize(system.routines[0], system, state, EVALUATED, dense)
     if not done or system.massless[0] == 1:
         control.pivoted = 1
-    return control.pivoted == 0
+    return control.pivoted == 0 or aided(system, FACTORS)
 
 
 @compiled
@@ -203,7 +195,7 @@ def subtract(system, state):
 
 @compiled
 def correct(system, state, going):
-    """Subtract a correction; returns DONE, FAILED or, to go on, SOLVE. In lanes, of some members.
+    """Subtract a correction; returns DONE, FAILED or, to go on, GO_ON. In lanes, of some members.
     """
     control, clock, n = state.control, state.clock, system.diagonal.size
     norm, size, left = subtract(system, state)
@@ -214,11 +206,11 @@ def correct(system, state, going):
     none = (either(stays, ROUNDED, ACCURATE) * size
             + either(stays, STIFF, 1.0) * _rounding(system, state))
     settles = (rate <= POOR) & (max(rate, FASTEST) / (1.0 - rate) * norm <= none)
-    verdict = either((norm <= none) | (old & settles), DONE, SOLVE)
+    verdict = either((norm <= none) | (old & settles), DONE, GO_ON)
     many = norm_after(norm, rate, REFACTORIZATION_COST)
-    renew = going & (verdict == SOLVE) & (poor | (old & (many > none)))
+    renew = going & (verdict == GO_ON) & (poor | (old & (many > none)))
     control.wanted = either(renew, EVALUATED, control.wanted)
-    ended = (verdict == SOLVE) & ((control.iteration >= MOST_CORRECTIONS) | (
+    ended = (verdict == GO_ON) & ((control.iteration >= MOST_CORRECTIONS) | (
         poor & (control.fresh >= MOST_MATRICES)))
     if control.regularized == 1 and system.massless[0] == 0:
         # what the corrections of a regularized matrix leave is a contradiction, or a force on
@@ -300,7 +292,7 @@ def _end(system, state):
     set_acting(system, state)
     give_back(system, state)
     control.pivoted, control.fresh = 0, 1       # nothing is predicted, see `step.begin_step`
-    control.restart, control.phase = 0, BEGIN
+    control.restart = 0
     return DONE
 
 
@@ -309,6 +301,6 @@ def _fail(system, state, reason):
     """Give up: a later call begins anew."""
     control = state.control
     give_back(system, state)
-    control.reason, control.phase, control.restart = reason, BEGIN, ASKED
+    control.reason, control.restart = reason, ASKED
     control.wanted = EVALUATED
     return FAILED

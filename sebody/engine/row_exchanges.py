@@ -1,6 +1,6 @@
 """Factors with row exchanges, where elimination by blocks meets a small pivot or mass is missing.
 
-The loop returns, and whoever called it calls `exchange`: Python, or the program that has a library.
+The loop asks its aid for them, which calls `exchange`, see `sebody.engine.aid`.
 Factors follow from the matrix and the scales in the state alone, so they are no part of a state
 that is kept: they are made again when they are asked for.
 
@@ -20,7 +20,7 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.matrix import sum_matrices
 from sebody.engine.regularization import PROJECTIONS, REGULARIZATION, regularize
 from sebody.engine.sparse_lu import ROOM, SINGULAR, Columns, Factors, factorize, substitute
-from sebody.engine.state import FACTORED
+from sebody.engine.state import FACTORS, SOLUTION
 
 UNKNOWN, OF_STEP, OF_MASSES, LEAST, FAILED = range(5)   # what factors are of
 DAMPED = 1e-8           # parts of masses that are weaker, relative to the largest entry, are none
@@ -68,12 +68,12 @@ class Exchanges(Arrays):
 
 
 @compiled
-def exchange(system, state, exchanges):
-    """Factorize or solve, whichever the loop waits for; ROOM where factors need more than there is.
+def exchange(system, state, exchanges, what):
+    """Make FACTORS or a SOLUTION; returns ROOM where factors need more than there is.
 
     Called again with as many entries as ``kind[1]`` says, it goes on.
     """
-    if state.control.phase == FACTORED:
+    if what == FACTORS:
         exchanges.kind[0] = UNKNOWN
     if exchanges.kind[0] == UNKNOWN:
         outcome = _factorize(system, state, exchanges)
@@ -81,7 +81,7 @@ def exchange(system, state, exchanges):
             exchanges.kind[1] = 2 * (exchanges.factors.values.size + exchanges.matrix.entries.size)
             exchanges.kind[0] = UNKNOWN
             return ROOM
-    if state.control.phase != FACTORED:
+    if what == SOLUTION:
         _solve(system, state, exchanges)
     return OK
 

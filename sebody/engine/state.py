@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from sebody.contract.layout import COEFFICIENTS, HALF_TURN, NO_FRAME, OFF_PATH, OK, RECORD
 from sebody.engine.arrays import Arrays
 
-DONE, CHUNK, FACTOR, SOLVE, FAILED, READ = range(6)     # what the loop returns
-# phases of the loop: where it continues when it is called again
-BEGIN, ITERATE, FACTORED, PROJECT, PROJECTED, READY, SOLVED = range(7)
+DONE, CHUNK, FAILED = range(3)      # what the loop returns
+# what it asks its aid for: factors with row exchanges, a solution by them, readings of sensors
+FACTORS, SOLUTION, READINGS = range(3)
 # what an iteration needs: the factors as they are; factors of a matrix in which the bodies' old
 # element matrices are rotated with them and all others are new; of new element matrices only; or
 # ROTATED ones that were new in the state before the step, see `step.renew_bodies`
@@ -25,7 +25,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 # why a step failed: answers of kernels keep their numbers, further reasons follow
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(OFF_PATH + 1, OFF_PATH + 5)
-NO_START, BAD_CONTROL, CONTACT, GROWS = range(GAP + 1, GAP + 5)
+NO_START, BAD_CONTROL, CONTACT, GROWS, NO_AID = range(GAP + 1, GAP + 6)
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
@@ -37,6 +37,7 @@ REASONS = {
     BAD_CONTROL: "a controller gave what is not finite, or raised",
     CONTACT: "a contact or stop changes its rate by more than a tenth of the impact speed",
     GROWS: "energy grows",
+    NO_AID: "what a step lacks, such as room for factors, was not given",
     NO_START: "no accelerations were found that satisfy dynamics and constraints",
 }
 # what a step ends at; at a sample and at a jump of accelerations is a restart

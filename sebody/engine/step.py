@@ -29,7 +29,6 @@ from sebody.engine.newton import OLDEST_ROTATED, SLOWEST, forget_matrix, watch_a
 from sebody.engine.prediction import BEFORE, FITTED, LAST, look_back, ring_place, row
 from sebody.engine.state import (
     ASKED,
-    BEGIN,
     CONTACT,
     EVALUATED,
     FINEST,
@@ -257,7 +256,6 @@ def back(state):
     for i in range(state.frames.size):
         state.frames[i] = state.frames_old[i]
     copy(state.loads_old, state.loads)
-    state.control.phase = BEGIN
     state.control.wanted = EVALUATED
     state.control.iteration = 0
     state.clock.contraction = SLOWEST      # nothing is known of the next attempt

@@ -105,6 +105,8 @@ class System(Arrays):
     massless            (1,) 1 where a motion has stiffness and no mass: Python solves for
                         accelerations
     damped              (1,) 1 where a superelement has structural damping
+    aid                 (2,) address and context of what gives the loop what it lacks, see
+                        `engine.aid`; zeros where nobody does
     routines            (4,) addresses of `refactorize`, `restart`, `sample` and `share`: see
                         `engine.routines`
     guarded             places in `State.frames` of the rates of contacts, followed by the speeds of
@@ -171,4 +173,5 @@ class System(Arrays):
     body_mass: NDArray
     damped: NDArray
     guarded: NDArray
+    aid: NDArray
     routines: NDArray

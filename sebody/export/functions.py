@@ -29,7 +29,7 @@ FUNCTIONS = {
     "sample": (control.sample, "system state"),
     "set_input": (control.set_input, "system state whole number"),
     "evaluate": (reading.evaluate, "system state outputs"),
-    "exchange": (row_exchanges.exchange, "system state exchanges"),
+    "exchange": (row_exchanges.exchange, "system state exchanges whole"),
 }
 
 

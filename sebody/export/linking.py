@@ -35,7 +35,7 @@ CONVENTIONS = {
     "sample": Convention("i64", ("ptr", "ptr"), str(RAISED)),
     "set_input": Convention("i64", ("ptr", "ptr", "i64", "double"), "0"),
     "evaluate": Convention("i64", ("ptr",) * 3, "1"),
-    "exchange": Convention("i64", ("ptr",) * 3, "1"),
+    "exchange": Convention("i64", ("ptr", "ptr", "ptr", "i64"), "1"),
     "history": Convention("double", ("double",), "0x7FF8000000000000"),
     "force": Convention("void", ("i64", "double", "ptr", "ptr", "ptr"), ""),
     "controller": Convention("i64", ("double",) + ("ptr",) * 4, "1"),

@@ -166,7 +166,7 @@ class Prepared:
             *self._in(system.control.controllers, users),
             *((self.image.at(system.routines, k), name) for k, name in enumerate(ROUTINES))]
         self.called = list(dict.fromkeys(name for _, name in self.calls))
-        self.image.clear([at for at, _ in self.calls])
+        self.image.clear([*(at for at, _ in self.calls), self.image.at(system.aid)])
 
     def _in(self, array: NDArray, known: dict[int, str]) -> list[tuple[int, str]]:
         flat = array.ravel()

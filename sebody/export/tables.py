@@ -35,7 +35,8 @@ def _numbers(model: Prepared, record: Record) -> dict[str, int]:
         "AT_CONTROL": image.at(state.control), "AT_CLOCK": image.at(state.clock),
         "AT_MEMORY": image.at(state.memory), "AT_NOW": image.at(state.now),
         "AT_VALUES": image.at(outputs.values), "AT_CORNERS": image.at(system.corners),
-        "AT_JUMPS": image.at(system.jumps), "COLUMNS": state.now.size,
+        "AT_JUMPS": image.at(system.jumps), "AT_AID": image.at(system.aid),
+        "COLUMNS": state.now.size,
         "AT_A": image.at(state.a), "AT_Q": image.at(state.q), "AT_WEIGHT": image.at(state.weight),
         "AT_MULTIPLIERS": image.at(system.is_multiplier), "UNKNOWNS": system.diagonal.size,
         "AT_FACTORS_VALID": image.at(state.spare, kept_factors.VALID), "KEEPS": state.spare.size,
@@ -48,7 +49,7 @@ def _numbers(model: Prepared, record: Record) -> dict[str, int]:
         "SENSORS": len(model.sensors), "VARIABLES": len(model.names), "INPUTS": len(model.inputs),
         "REASONS": max(REASONS) + 1, "CALLED": len(model.calls),
         **{f"MEMORY_{name}": getattr(control_data, name) for name in (
-            "STOP", "NEXT", "HAS", "COUNTS")},
+            "STOP", "NEXT", "COUNTS")},
         **{f"CONTROL_{name.upper()}": _number(CONTROL, name) for name in (
             "grid", "recorded", "reason", "restart", "corner", "wanted")},
         **{f"CLOCK_{name.upper()}": _number(CLOCK, name) for name in ("time", "step")}}

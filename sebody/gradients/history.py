@@ -19,10 +19,10 @@ from sebody.basics.errors import SimulationError
 from sebody.contract.layout import C_STIFFNESS, RECORD_T
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
-from sebody.engine.state import CHUNK, DONE, FAILED, Record, State
+from sebody.engine.state import FAILED, Record, State
 from sebody.engine.step import write_record
+from sebody.runs.aid import Aid
 from sebody.runs.failures import explained
-from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.simulation import Simulation
 
 RESTART, STEP = 0, 1        # kinds of events
@@ -126,7 +126,7 @@ def meet(run: Simulation, times: Sequence[float]) -> None:
     order = np.argsort(corners)
     jumps = np.concatenate([system.jumps, np.zeros(len(more), dtype=np.int64)])
     run.system = replace(system, corners=corners[order], jumps=jumps[order])
-    run.exchanges = RowExchanges(run.system, run.state)
+    run.aid = Aid(run.system, run.state, run.sampling.read_sensors)
 
 
 def _whole(run: Simulation, first: int, last: int) -> History | None:
@@ -140,15 +140,14 @@ def _whole(run: Simulation, first: int, last: int) -> History | None:
     inside = (run.system.corners > after) & (run.system.corners <= (last + OFF) * run.h)
     if run.tolerance is not None or (run.system.jumps[inside] > 0).any():
         return None
-    record, code = Record.of(state, count + 1), CHUNK
+    record = Record.of(state, count + 1)
     state.control.recorded = 0
     write_record(state, record)
-    while code not in (DONE, FAILED):
-        run.exchanges.serve()
-        code = advance(run.system, state, record, run.scheme, last, count + 1, run.dense)
+    code = advance(run.system, state, record, run.scheme, last, count + 1, run.dense)
+    run.aid.check()
     if code == FAILED or state.control.steps - steps != count or state.control.cuts > cuts:
         put_back(state, start)
-        run.exchanges.forget()
+        run.aid.forget()
         return None
     offsets, kinds = np.ones(count + 1), np.full(count + 1, STEP)
     kinds[0] = RESTART
@@ -177,14 +176,10 @@ def put_back(state: State, numbers: list[NDArray]) -> None:
 
 def _one_step(run: Simulation, record: Record, last: int) -> bool:
     """Advance by one accepted step, and by the restart that may follow; False if it fails."""
-    state, chunk = run.state, 1
-    state.control.recorded = 0
-    while True:
-        code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
-        if code in (CHUNK, DONE, FAILED):
-            return code != FAILED
-        run.exchanges.serve()
-        chunk = 0           # the step it is in the middle of is the one
+    run.state.control.recorded = 0
+    code = advance(run.system, run.state, record, run.scheme, last, 1, run.dense)
+    run.aid.check()
+    return code != FAILED
 
 
 class _Events:

@@ -117,7 +117,7 @@ class Segments:
             return self._kept
         begin = self.begins[k]
         put_back(self.run.state, begin.state)
-        self.run.exchanges.forget()
+        self.run.aid.forget()
         found = stretch(self.run, self.last, begin.most)
         if k == 0:
             return found

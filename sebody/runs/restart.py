@@ -18,7 +18,7 @@ from sebody.basics.files.members import Header, Member, Table
 from sebody.contract.layout import RECORD_T
 from sebody.engine.clock import CLOCK, CONTROL
 from sebody.engine.scalars import numbers_of, record
-from sebody.engine.state import AHEAD, EVALUATED, FINEST, JUMP, REASONS, SOLVED, Scheme, State
+from sebody.engine.state import AHEAD, EVALUATED, FINEST, JUMP, REASONS, Scheme, State
 from sebody.model.model import Model
 from sebody.runs.fingerprint import fingerprint
 from sebody.runs.planning import Plan
@@ -26,14 +26,14 @@ from sebody.runs.simulation import Simulation
 from sebody.runs.steps import MOST_STEPS
 from sebody.runs.tolerance import Tolerance
 
-VERSION = 7
+VERSION = 8
 TARGET = "restart file", (".npz",)      # see `files.check_target`
 SETTINGS = {"h", "every", "seconds", "scheme", "tolerance", "plan", "model"}
 OF_START = "regularized", "massless", "inertias", "massless_axes"  # of the system
 REMEDY, REPEAT = "give one that was saved by sebody.analysis.save_state", "run the model again"
 OFF = 1e-6          # of a step, by which rounding may put a time off
 # largest values of counters; others count steps, of which no run has more than MOST_STEPS
-MOST = {"phase": SOLVED, "unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
+MOST = {"unit": FINEST, "level": FINEST.bit_length(), "wanted": EVALUATED,
         "reason": max(REASONS), "pivoted": 1, "adaptive": 1, "secant": 1, "regularized": 1,
         "meets": JUMP, "split": 1, "inside": 1, "restart": AHEAD, "due": 1}
 FINITE = ("rows", "now", "aux", "q_old", "R_old", "v_old", "a_old", "aux_old", "changes", "fitted",
@@ -97,7 +97,7 @@ def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation:
         getattr(run.system, name)[:] = arrays[name]
     run.rows.stretches = [arrays["rows"]]
     run.seconds = settings["seconds"]
-    run.exchanges.forget()
+    run.aid.forget()
     return run
 
 

@@ -11,10 +11,8 @@ from sebody.basics.errors import InputError
 from sebody.engine.control import set_input, set_next
 from sebody.engine.control_data import (
     COUNTS,
-    HAS,
     OUTPUT,
     STOP,
-    WAITS,
 )
 from sebody.engine.state import ASKED, SAMPLED, State
 from sebody.engine.system import System
@@ -63,13 +61,10 @@ class Sampling:
         """True where there is a task to do at samples."""
         return self.system.control.periods.size > 0
 
-    def serve(self) -> None:
-        """Read what the loop waits for."""
-        memory = self.state.memory
-        if memory[WAITS] == 1.0 and memory[HAS] == 0.0:
-            for place, sensor in self._outside:
-                memory[place] = self.measured(sensor)
-            memory[HAS] = 1.0
+    def read_sensors(self) -> None:
+        """Read the sensors that the loop cannot read."""
+        for place, sensor in self._outside:
+            self.state.memory[place] = self.measured(sensor)
 
     def check(self, h: float, fixed: bool) -> None:
         """Refuse quantities that are no numbers, and periods that fixed steps do not meet.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 from sebody.runs import user_faults
+from sebody.runs.aid import Aid
 from sebody.runs.failures import explained, of_start
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import energy_lost, take
@@ -34,7 +36,6 @@ from sebody.runs.limits.watch import Watch
 from sebody.runs.planning import Plan, StepLog
 from sebody.runs.pulses import divided, unseen, untold
 from sebody.runs.recorded_rows import RecordedRows
-from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.schemes import checked, fitting
 from sebody.runs.start_remarks import kicks, start_remarks
@@ -133,8 +134,8 @@ class Simulation:
                 threads, self.numbering.free))
         self.seconds = 0.0
         self.failure = ""
-        self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
+        self.aid = Aid(self.system, self.state, self.sampling.read_sensors)
         user_faults.forget(model)
         self.begun, self.tolerance = start, tolerance
         self._unjudged = any("teeth" in load.tuned for load in model.loads)
@@ -293,12 +294,11 @@ class Simulation:
         if (buffer := self.rows.buffer(count + 1)) is None:
             return False
         self.sampling.stop_at(t_end)
-        if not worth_help(self.system, count):
-            return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
-                           self.dense) == DONE
-        with helping(self.system, state):
-            return advance(self.system, state, buffer, self.scheme, last, FEW + 1,
-                           self.dense) == DONE
+        helped = helping(self.system, state) if worth_help(self.system, count) else nullcontext()
+        with helped:
+            code = advance(self.system, state, buffer, self.scheme, last, FEW + 1, self.dense)
+        self.aid.check()
+        return code == DONE
 
     def flush(self) -> None:
         """Put what short pieces recorded into `rows`, and look whether limits are exceeded."""
@@ -311,9 +311,8 @@ class Simulation:
         code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            self.exchanges.serve()
-            self.sampling.serve()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
+            self.aid.check()
             if self.plan.logged:
                 self.log.take(self.state)
             now = time.perf_counter()
@@ -326,8 +325,6 @@ class Simulation:
                 if progress:
                     progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
                 looked = time.perf_counter()
-            elif waited > LOOK:         # steps that Python helps with are not counted: stop at
-                chunk = 0               # the beginning of the next one
         return code
 
     def result(self) -> Result:
@@ -351,15 +348,13 @@ class Simulation:
 
         So the loop is compiled, or read from the cache, before time is measured.
         """
-        state, code = self.state, CHUNK
+        state = self.state
         self.system.routines[:] = addresses(self.system, state)
         if self.tolerance is not None:
             state.clock.current_step = FIRST_STEP * self.h     # so far ahead it looks
         none = self.rows.none()
-        while code not in (DONE, FAILED):
-            self.exchanges.serve()
-            self.sampling.serve()
-            code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
+        self.aid.check()
         if code == FAILED and (did := user_faults.fault(self.model, 0.0)):
             raise InputError(f"the run cannot begin: {did}")
         if code == FAILED:

@@ -20,7 +20,7 @@ INDICES = [f.name for f in fields(System) if f.name not in (
     "massless_axes", "magnitude", "table_at", "table_times", "table_pieces", "corners", "jumps",
     "functions", "series", "series_times", "series_values", "prescribed", "prescribed_factor",
     "links", "control", "regularized", "massless", "body_stiffness", "body_mass", "damped",
-    "guarded", "routines", "shared")]
+    "guarded", "aid", "routines", "shared")]
 OF_LINKS = [f.name for f in fields(Links) if f.name != "arm_vectors"]
 CHANGES = {
     "support of another node": {"support": 1}, "another support": {"fixed": True},

@@ -30,7 +30,7 @@ from sebody.assembly.evaluation import assembled, matrix  # noqa: E402
 from sebody.engine.matrix import equilibrate, sum_matrices  # noqa: E402
 from sebody.engine.row_exchanges import Exchanges, exchange  # noqa: E402
 from sebody.engine.sparse_lu import ROOM, THRESHOLD, factorize, substitute  # noqa: E402
-from sebody.engine.state import FACTORED  # noqa: E402
+from sebody.engine.state import FACTORS, SOLUTION  # noqa: E402
 from sebody.scenes import chain  # noqa: E402
 
 MODELS = {"chain of 8": lambda: chain.build(links=8).model,
@@ -61,13 +61,13 @@ def measure(name: str, pairs: int) -> dict:
     system, state, n = run.system, run.state, run.system.diagonal.size
     matrix(system, state, "the state", mass=1.0, damping=1e-3, stiffness=1e-6, constraint=1.0)
     equilibrate(system, state)
-    state.control.phase, state.control.regularized, state.control.restart = FACTORED, 0, 0
+    state.control.regularized, state.control.restart = 0, 0
     stored = system.rows.size
     found = Exchanges.of(n, stored)
-    while exchange(system, state, found) == ROOM:
+    while exchange(system, state, found, FACTORS) == ROOM:
         found = Exchanges.of(n, stored, int(found.kind[1]))
     sum_matrices(system, state, state.residual, False)      # a singular one was regularized
-    exchange(system, state, found)
+    exchange(system, state, found, SOLUTION)
 
     def gathered() -> csc_matrix:
         scale = diags(state.scale[:n])
@@ -77,7 +77,7 @@ def measure(name: str, pairs: int) -> dict:
         return splu(A, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
     A, right, x = gathered(), np.random.default_rng(1).normal(size=n), np.zeros(n)
     other = by_superlu(A)
-    whole = best(pairs, lambda: exchange(system, state, found), lambda: by_superlu(gathered()))
+    whole = best(pairs, lambda: exchange(system, state, found, FACTORS), lambda: by_superlu(gathered()))
     factored = best(pairs, lambda: factorize(found.matrix, n, found.factors), lambda: by_superlu(A))
     solution = best(pairs, lambda: substitute(found.factors, n, right.copy(), x),
                     lambda: other.solve(right))

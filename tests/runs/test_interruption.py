@@ -11,6 +11,7 @@ from sebody.analysis import resume, save_state
 from sebody.assembly import build as assembly
 from sebody.engine.state import CHUNK, DONE
 from sebody.runs import simulation
+from sebody.runs.aid import Aid
 from sebody.scenes import chain, hinged_beam
 
 
@@ -59,21 +60,20 @@ def test_ctrl_c_in_python_keeps_what_there_is(stepwise, tmp_path):
     assert "FAILED               interrupted at t = 0.16" in result.summary()
 
 
-@pytest.mark.parametrize("returns", range(1, 8))
-def test_interrupted_anywhere_between_calls_of_the_loop(monkeypatch, tmp_path, returns):
-    """Also where the loop waits for factors or a solution: from memory and from a file."""
+@pytest.mark.parametrize("asked", range(1, 8))
+def test_interrupted_where_the_loop_asks_for_factors_or_a_solution(monkeypatch, tmp_path, asked):
+    """The step goes on with what it asked for; the run goes on from memory and from a file."""
     monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
     first, whole = (Simulation(chain.build(links=8).model, 0.01) for _ in range(2))
     whole.run_to(0.05)
-    advance, left = simulation.advance, [returns]
+    exchange, left = Aid._exchange, [asked]
 
-    def interrupted(*arguments):
-        code = advance(*arguments)
+    def interrupted(self, what):
         left[0] -= 1
         if left[0] == 0:
             raise KeyboardInterrupt
-        return code
-    monkeypatch.setattr(simulation, "advance", interrupted)
+        exchange(self, what)
+    monkeypatch.setattr(Aid, "_exchange", interrupted)
     with pytest.raises(Interrupted):
         first.run_to(0.05)
     second = resume(chain.build(links=8).model, save_state(first, tmp_path / "state.npz"))

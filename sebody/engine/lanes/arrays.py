@@ -26,7 +26,7 @@ SAMPLED = {"periods", "offsets"}        # and what of it is the same for all
 # scalars of all members together; the other ones of the records are lanes
 TIMES = {"time", "step", "current_step", "aux_step", "chosen", "end", "beside",
          "allowed", "origin", "begun", "rate", "rate_before", "natural"}
-WHOLE = {"phase", "grid", "unit", "level", "recorded", "pivoted", "adaptive", "corner",
+WHOLE = {"grid", "unit", "level", "recorded", "pivoted", "adaptive", "corner",
          "meets", "split", "inside", "restart", "due", "held", "piece", "regularized", "cuts",
          "rejected"}
 _ALIGNED = 64       # bytes of a vector

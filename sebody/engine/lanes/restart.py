@@ -15,7 +15,7 @@ from sebody.engine.lanes.matrix import factorize_masses
 from sebody.engine.matrix import solve
 from sebody.engine.newton import REFACTORIZATION_COST, SLOWEST
 from sebody.engine.restart import correct, set_masses
-from sebody.engine.state import EVALUATED, FAILED, KEPT, SOLVE
+from sebody.engine.state import EVALUATED, FAILED, GO_ON, KEPT
 from sebody.engine.vectors import copy
 from sebody.engine.work import set_acting
 
@@ -47,7 +47,7 @@ def restart(system, state, scratch, alone, active, dense):
             state.correction[i] = where(going, state.correction[i], spread(0.0))
         verdict = correct(system, state, going)
         control.reason = where(going & (verdict == FAILED), spread(GAVE_UP), control.reason)
-        going = going & (verdict == SOLVE)
+        going = going & (verdict == GO_ON)
     if keeps:
         swap_factors(system, state)
         _count_excess(state, active)

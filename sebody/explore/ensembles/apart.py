@@ -39,7 +39,8 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     """
     one = of[1]
     numbers = np.zeros((MEMBERS, offsets.size))
-    system, state = offsets.packed(of[0], numbers[0]), offsets.packed(one, numbers[0])
+    system = replace(offsets.packed(of[0], numbers[0]), aid=np.zeros_like(of[0].aid))
+    state = offsets.packed(one, numbers[0])
     numbers[1:] = numbers[0]
     scalars = {name: np.tile(numbers_of(getattr(one, name)), (MEMBERS, 1)) for name in RECORDS}
     flags = {own.name: np.array([value] * MEMBERS) for own in fields(State)

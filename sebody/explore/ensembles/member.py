@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,9 @@ from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
     ASKED,
     DONE,
-    FACTOR,
     FACTORS_KEPT,
     FAILED,
-    READ,
     REASONS,
-    SOLVE,
     Record,
     State,
 )
@@ -30,8 +28,8 @@ from sebody.explore.ensembles.start_values import Image
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs import user_faults
+from sebody.runs.aid import Aid
 from sebody.runs.outputs import Fold, Form, Output
-from sebody.runs.row_exchanges import RowExchanges
 from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
 
@@ -50,8 +48,8 @@ class Copies:
         self.floats = image.floats.copy()
         self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
                                                 self.floats)
-        self.exchanges = RowExchanges(self.system, self.state)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
+        self.aid = Aid(self.system, self.state, self.sampling.read_sensors)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
         self.given = self._beginning()
         self._record: Record | None = None
@@ -77,15 +75,10 @@ class Copies:
         InputError
             The initial state cannot be evaluated.
         """
-        system, state, sampled = self.system, self.state, False
+        system, state = self.system, self.state
         beginning.begin(system, state, self.given, change)
         code = self._advance_start()
-        while code in (DONE, READ) and self.sampling.samples:
-            if code == DONE and not sampled:
-                sampled = self.sampling.begin()
-            elif code == DONE:
-                break
-            self.sampling.serve()
+        if code == DONE and self.sampling.begin():
             code = self._advance_start()
         if code == FAILED and system.regularized[0]:
             return False        # where constraints contradict each other, and Python can tell which
@@ -101,12 +94,10 @@ class Copies:
         return bool(self.system.massless[0]) or bool(self.sampling.samples)
 
     def _advance_start(self) -> int:
-        """Go on with a start; factorizations with row exchanges are made here."""
-        while True:
-            self.exchanges.serve()
-            code = advance(self.system, self.state, self.none, self.scheme, 0, 0, self.dense)
-            if code not in (FACTOR, SOLVE):
-                return code
+        """Solve for the accelerations of a start, after its samples."""
+        code = advance(self.system, self.state, self.none, self.scheme, 0, 0, self.dense)
+        self.aid.check()
+        return code
 
     def begin_together(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
         """Begin some runs, those that have begun in lanes; returns which these are.
@@ -173,7 +164,8 @@ class Copies:
 def arrays_of_run(system: System, state: State, offsets: Offsets, floats: NDArray
                   ) -> tuple[System, State]:
     """System and state of a run, with its numbers in a buffer that gets those given."""
-    return (offsets.packed(system, floats), _with_own_integers(offsets.packed(state, floats)))
+    return (replace(offsets.packed(system, floats), aid=np.zeros_like(system.aid)),
+            _with_own_integers(offsets.packed(state, floats)))
 
 
 def _with_own_integers(state: State) -> State:
@@ -234,10 +226,9 @@ class Course:
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
         run, state, chunk = self.run, self.run.state, 1000
         while True:
-            run.exchanges.serve()
-            run.sampling.serve()
             began = time.perf_counter()
             code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
+            run.aid.check()
             if code in (DONE, FAILED) or stop():
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))

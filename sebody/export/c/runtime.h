@@ -10,7 +10,8 @@
 #include "inflate.h"
 #include "model.h"
 
-enum { DONE, CHUNK, FACTOR, SOLVE, FAILED, READ, RAISED };      /* what the loop returns */
+enum { DONE, CHUNK, FAILED, RAISED };                           /* what the loop returns */
+enum { FACTORS, SOLUTION, READINGS };                           /* what it asks for */
 enum { INPUT, ACCELERATION, PARAMETER };                        /* kinds of inputs */
 #define ALIGNED 64
 #define NEVER_RECORDED ((int64_t)1 << 60)
@@ -19,7 +20,7 @@ enum { INPUT, ACCELERATION, PARAMETER };                        /* kinds of inpu
 extern int64_t sb_advance(void *system, void *state, void *record, const double *scheme,
                           int64_t last, int64_t chunk, int64_t dense);
 extern int64_t sb_evaluate(void *system, void *state, void *outputs);
-extern int64_t sb_exchange(void *system, void *state, void *exchanges);
+extern int64_t sb_exchange(void *system, void *state, void *exchanges, int64_t what);
 extern int64_t sb_set_input(void *system, void *state, int64_t k, double value);
 extern void *const sb_functions[];
 extern const unsigned char sb_image[];
@@ -43,11 +44,16 @@ static void place(Instance *m, int64_t *to, const int64_t *words, int count) {
     to[i] = words[i] < 0 ? (int64_t)(intptr_t)(m->base - (words[i] + 1)) : words[i];
 }
 
+static int64_t aid(int64_t context, int64_t what);
+
 static void instance_reset(Instance *m) {
   inflate(sb_image, (unsigned char *)m->base);
   memset(m->base + IMAGE_STORED, 0, IMAGE_SIZE - IMAGE_STORED);
   for (int i = 0; i < CALLED; i++)
     *(int64_t *)(m->base + CALLED_AT[i]) = (int64_t)(intptr_t)sb_functions[CALLED_FUNCTION[i]];
+  int64_t *asked = (int64_t *)(m->base + AT_AID);
+  asked[0] = (int64_t)(intptr_t)aid;
+  asked[1] = (int64_t)(intptr_t)m;
   m->stale = 1;
   m->failed = 0;
   m->message[0] = 0;
@@ -78,22 +84,21 @@ static int fail(Instance *m, const char *why) {
   return 1;
 }
 
-/* Read what sensors measure that the loop itself cannot read, where it waits for that. */
+/* Read what sensors measure that the loop itself cannot read. */
 static int read_sensors(Instance *m) {
   double *memory = numbers(m, AT_MEMORY);
   if (sb_evaluate(m->system, m->state, m->outputs))
     return fail(m, "what a sensor measures cannot be evaluated");
   for (int i = 0; i < SENSORS; i++)
     memory[SENSOR_PLACE[i]] = numbers(m, AT_VALUES)[SENSOR_OUTPUT[i]];
-  memory[MEMORY_HAS] = 1.0;
   return 0;
 }
 
-/* Factorize or solve with row exchanges, which the loop waits for. Room for factors is made where
+/* Factorize or solve with row exchanges. Room for factors is made where
    they are needed: their values and rows are the first two arrays of the words. */
-static int exchange(Instance *m) {
+static int exchange(Instance *m, int64_t what) {
   for (;;) {
-    int64_t found = sb_exchange(m->system, m->state, m->exchanges);
+    int64_t found = sb_exchange(m->system, m->state, m->exchanges, what);
     if (found != ROOM) return found ? fail(m, "compiled code failed") : 0;
     int64_t entries = ((int64_t *)(m->base + AT_KIND))[1];
     free(m->factors);
@@ -108,6 +113,12 @@ static int exchange(Instance *m) {
   }
 }
 
+/* Give the loop of an instance what it lacks; 0 if all went well. */
+static int64_t aid(int64_t context, int64_t what) {
+  Instance *m = (Instance *)(intptr_t)context;
+  return what == READINGS ? read_sensors(m) : exchange(m, what);
+}
+
 /* Call the loop until the step `last` of the grid, or for `chunk` steps; 0 if all went well. */
 static int go(Instance *m, int64_t last, double *rows, int64_t count, int64_t chunk) {
   double none[1];
@@ -117,17 +128,12 @@ static int go(Instance *m, int64_t last, double *rows, int64_t count, int64_t ch
   m->every = rows ? 1 : NEVER_RECORDED;
   m->stale = 1;
   control(m)[CONTROL_RECORDED] = 0;
-  for (;;) {
-    int64_t code = sb_advance(m->system, m->state, m->record, SCHEME, last, chunk, DENSE);
-    if (code == DONE || code == CHUNK) return 0;
-    if (code == READ || code == FACTOR || code == SOLVE) {
-      if (code == READ ? read_sensors(m) : exchange(m)) return 1;
-      continue;
-    }
-    int64_t reason = control(m)[CONTROL_REASON];
-    return fail(m, code != FAILED || reason < 0 || reason >= REASONS ? "compiled code failed"
-                   : REASON[reason]);
-  }
+  int64_t code = sb_advance(m->system, m->state, m->record, SCHEME, last, chunk, DENSE);
+  if (code == DONE || code == CHUNK) return 0;
+  if (m->failed) return 1;      /* for want of what the loop asked for */
+  int64_t reason = control(m)[CONTROL_REASON];
+  return fail(m, code != FAILED || reason < 0 || reason >= REASONS ? "compiled code failed"
+                 : REASON[reason]);
 }
 
 /* Let steps of fixed length end at a time off their grid, too; forget it with a negative time. */
