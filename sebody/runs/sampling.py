@@ -1,7 +1,8 @@
 """Sensors and controllers of a run, as far as Python has to do with them."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,15 @@ from sebody.results.tapes import States
 from sebody.runs.user_faults import functions
 
 MULTIPLE = 1e-6     # of a step: by which a period may miss a multiple of it
+
+
+class _Taped(NamedTuple):
+    """Sensors whose quantities are outputs of one tape."""
+
+    places: NDArray         # of their readings in `State.memory`
+    gains: NDArray
+    reading: Reading
+    turns: bool             # whether it has angles
 
 
 class Sampling:
@@ -63,8 +73,28 @@ class Sampling:
 
     def read_sensors(self) -> None:
         """Read the sensors that the loop cannot read."""
-        for place, sensor in self._outside:
+        taped, others = self._sensors
+        if taped is not None:
+            self.state.memory[taped.places] = taped.gains * self._values(taped.reading, taped.turns)
+        for place, sensor in others:
             self.state.memory[place] = self.measured(sensor)
+
+    @cached_property
+    def _sensors(self) -> tuple[_Taped | None, list[tuple[int, Sensor]]]:
+        """One tape for all sensors that have one, and the sensors that have none."""
+        states = States(self.model, self.numbering, self.system, self.state, self._start)
+        taped, others = [], []
+        for place, sensor in self._outside:
+            try:
+                states.put(sensor.quantity, sensor.axes)
+                taped.append((place, sensor.gain))
+            except NoTape:
+                others.append((place, sensor))
+        if not taped:
+            return None, others
+        places, gains = zip(*taped, strict=True)
+        return _Taped(np.array(places), np.array(gains), states.reading(),
+                      bool(states.tape.angles)), others
 
     def check(self, h: float, fixed: bool) -> None:
         """Refuse quantities that are no numbers, and periods that fixed steps do not meet.
@@ -192,14 +222,19 @@ class Sampling:
 
     def _evaluated(self, reading: Reading, shape: tuple[int, ...], turns: bool) -> float | NDArray:
         """A quantity whose tape is evaluated in the state reached."""
+        values = self._values(reading, turns)
+        if not shape:
+            return float(values[0])
+        found = values.copy()
+        return found if len(shape) == 1 else found.reshape(shape)
+
+    def _values(self, reading: Reading, turns: bool) -> NDArray:
+        """The outputs of a tape in the state reached; the next evaluation overwrites them."""
         if turns:
             reading.numbers[1:] = 0.0       # angles begin within half a turn
         if evaluate(self.system, self.state, reading):
             raise InputError(f"the state at t = {self.state.clock.time:.6g} cannot be evaluated")
-        if not shape:
-            return float(reading.values[0])
-        found = reading.values.copy()
-        return found if len(shape) == 1 else found.reshape(shape)
+        return reading.values
 
     def _row(self) -> Recording:
         """The state reached, as a result reads it."""

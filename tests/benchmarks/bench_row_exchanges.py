@@ -77,7 +77,8 @@ def measure(name: str, pairs: int) -> dict:
         return splu(A, permc_spec="NATURAL", diag_pivot_thresh=THRESHOLD)
     A, right, x = gathered(), np.random.default_rng(1).normal(size=n), np.zeros(n)
     other = by_superlu(A)
-    whole = best(pairs, lambda: exchange(system, state, found, FACTORS), lambda: by_superlu(gathered()))
+    whole = best(pairs, lambda: exchange(system, state, found, FACTORS),
+                 lambda: by_superlu(gathered()))
     factored = best(pairs, lambda: factorize(found.matrix, n, found.factors), lambda: by_superlu(A))
     solution = best(pairs, lambda: substitute(found.factors, n, right.copy(), x),
                     lambda: other.solve(right))
