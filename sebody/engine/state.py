@@ -146,7 +146,7 @@ class State(Arrays):
     ------------------------------------------------------------------------------------------------
     guard                 energies and counters, see the fields `growth.GUARD`
     clock                 times, lengths of steps and norms, see the fields `clock.CLOCK`
-    control               phases, counters and flags, see the fields `clock.CONTROL`
+    control               counters and flags, see the fields `clock.CONTROL`
     ====================  ==========================================================================
     """
 

@@ -49,7 +49,7 @@ def sampled(flexible: bool) -> dict[str, float]:
     run = build(flexible, STEP)
     run.run_to(COUNT * STEP)
     return best | {"sample": best["sampled step"] - best["step"],
-                   "factorizations a sample": run.result().counters[9] / COUNT}
+                   "factorizations a sample": run.result().matrices / COUNT}
 
 
 def calls() -> dict[str, float]:

@@ -63,7 +63,7 @@ def test_every_reason_has_its_own_number_and_text():
     """Answers of kernels are reasons: the numbers that follow must not be theirs."""
     named = {name: getattr(codes, name) for name in (
         "NO_REASON", "HALF_TURN", "NO_FRAME", "OFF_PATH", "NOT_FINITE", "SLOW", "INACCURATE", "GAP",
-        "NO_START", "BAD_CONTROL", "CONTACT", "GROWS")}
+        "NO_START", "BAD_CONTROL", "CONTACT", "GROWS", "NO_AID")}
     assert len(set(named.values())) == len(named)
     assert [named[one] for one in ("NO_REASON", "HALF_TURN", "NO_FRAME", "OFF_PATH")] == [
         layout.OK, layout.HALF_TURN, layout.NO_FRAME, layout.OFF_PATH]
