@@ -31,7 +31,7 @@ from sebody.results.saved_checks import check_notes, member_lengths
 from sebody.results.units import unit
 
 OUTPUT = "output file", (".npz", hdf5.SUFFIX)    # what is saved, see `files.check_target`
-VERSION = 7
+VERSION = 8
 OWN = "sebody/"         # beginning of the names of members that are no named histories
 # members of a Recording
 NOTES = "seconds", "failure", "warnings", "error", "all_seconds", "stability", "events"
