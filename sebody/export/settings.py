@@ -95,7 +95,7 @@ def settings(run: Simulation, reading: Reading, names: list[str], outputs: Outpu
     def numbers(with_outputs: bool = True) -> NDArray | None:
         made, numbering = build(run.model, grid=run.grid)
         evaluate_alone(run.model, made)
-        for name in ("routines", "regularized", "massless"):
+        for name in ("aid", "routines", "regularized", "massless"):
             getattr(made, name)[:] = getattr(run.system, name)
         state = allocate(run.model, made, numbering, run.h, run.dense)
         read = outputs(numbering, made, state) if with_outputs else reading

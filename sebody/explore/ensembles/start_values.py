@@ -119,7 +119,7 @@ class Image:
         system, numbering = build(one.model, grid=one.grid)
         if not np.array_equal(system.address, one.system.address):
             evaluate_alone(one.model, system)       # as the template does, see `Ensemble`
-        for name in ("routines", "regularized", "massless"):
+        for name in ("aid", "routines", "regularized", "massless"):
             getattr(system, name)[:] = getattr(one.system, name)
         state = allocate(one.model, system, numbering, one.h, one.dense)
         if not (_alike(system, one.system) and _alike(state, one.state, sizes_only=True)):
