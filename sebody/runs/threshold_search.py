@@ -46,10 +46,13 @@ class Search:
 
     def step(self) -> int:
         """Take one step; the code of the loop."""
+        return self._advance(1)
+
+    def _advance(self, steps: int) -> int:
         run = self.run
-        run.exchanges.serve()
-        run.sampling.serve()
-        return advance(run.system, run.state, self.record, run.scheme, self.last, 1, run.dense)
+        code = advance(run.system, run.state, self.record, run.scheme, self.last, steps, run.dense)
+        run.aid.check()
+        return code
 
     def keep(self) -> None:
         """Remember the state reached."""
@@ -82,7 +85,7 @@ class Search:
         run = self.run
         for own, kept in self._kept:
             np.copyto(own, kept)
-        run.exchanges.forget()
+        run.aid.forget()
         if t - self._start > NEAR * run.h:
             self.end_at(t)
             code = CHUNK
@@ -94,11 +97,7 @@ class Search:
 
     def solve(self) -> None:
         """Solve for the accelerations and multipliers of the state reached."""
-        run, code = self.run, -1
-        while code not in (CHUNK, DONE, FAILED):
-            run.exchanges.serve()
-            run.sampling.serve()
-            code = advance(run.system, run.state, self.record, run.scheme, self.last, 0, run.dense)
+        self._advance(0)
 
 
 def _arrays(state: State) -> list[NDArray]:
