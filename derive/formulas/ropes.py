@@ -66,19 +66,38 @@ def span(planar: bool, sheaves: int) -> Element:
 
 
 def grip(planar: bool) -> Element:
-    """Rope w that a sheave a has taken up, held on it: ``r_a gamma_a - w = 0``."""
+    """Rope w that a sheave a has taken up, held on it: ``r_a gamma_a - turn theta - w = 0``.
+
+    The sheave turns by theta relative to its node.
+    """
     space = Space(planar)
     a, b, turn = position(space, "a"), position(space, "b"), rotation(space, "a")
-    taken = amplitude(space, "w")
+    taken, angle = amplitude(space, "w"), amplitude(space, "t")
     d = b.state.symbols - a.state.symbols
     radii = [constant(space, f"r_{name}", "scalar", "radius with sign") for name in "ab"]
+    by = constant(space, "turn", "scalar", "rope that the sheave gives in a turn by one radian")
     r = [one.symbols[0] for one in radii]
     straight = sp.sqrt(d.dot(d) - (r[1] - r[0])**2)
-    angle, axes = _direction(space, "a", turn, d, r[1] - r[0], straight)
+    gamma, axes = _direction(space, "a", turn, d, r[1] - r[0], straight)
     return element("planar_" * planar + "rope_grip", "rope that a sheave takes up", space,
-                   (a, b, taken, turn), (*radii, *axes),
-                   constraints=[r[0] * angle - taken.state.symbols[0]],
-                   memory=[("angle_a", angle)])
+                   (a, b, taken, angle, turn), (*radii, by, *axes),
+                   constraints=[r[0] * gamma - by.symbols[0] * angle.state.symbols[0]
+                                - taken.state.symbols[0]],
+                   memory=[("angle_a", gamma)])
+
+
+def wheel(planar: bool) -> Element:
+    """Inertia of a sheave that turns by theta about the axis n of its node.
+
+    ``T = J (Omega . n + theta')^2 / 2``
+    """
+    space = Space(planar)
+    angle, turn = amplitude(space, "t"), rotation(space, "a")
+    inertia = constant(space, "inertia", "scalar", "moment of inertia about the axis")
+    axis = constant(space, "n", "axial", "axis, in axes of the node")
+    spin = angle.rate.symbols[0] + axis.symbols.dot(turn.rate.symbols)
+    return element("planar_" * planar + "rope_wheel", "inertia of a sheave", space, (angle, turn),
+                   (inertia, axis), kinetic=inertia.symbols[0] * spin**2 / 2)
 
 
 def _direction(space: Space, name: str, turn: Block, d: sp.Matrix, D: sp.Expr, straight: sp.Expr

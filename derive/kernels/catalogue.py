@@ -59,6 +59,8 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "planar_rope": lambda: ropes.rope(True),
     "rope_grip": lambda: ropes.grip(False),
     "planar_rope_grip": lambda: ropes.grip(True),
+    "rope_wheel": lambda: ropes.wheel(False),
+    "planar_rope_wheel": lambda: ropes.wheel(True),
     **{"planar_" * planar + f"rope_{name}": partial(ropes.span, planar, sheaves)
        for sheaves, name in enumerate(ropes.SPANS) for planar in (False, True)},
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)

@@ -99,9 +99,10 @@ class Mechanism:
                                   for t in (n.position, n.rotation) if t is not None)) + self.ways()
 
     def ways(self) -> list[DofBlock]:
-        """Unknowns on no node: ways of points on paths, lengths of ropes."""
+        """Unknowns on no node: ways of points on paths, lengths of ropes, angles of sheaves."""
         found = [c.way for c in self.constraints if c.way is not None]
         found += [rope.winch for rope in self.ropes.values() if rope.winch is not None]
+        found += [load.hidden for load in self.loads if load.hidden is not None]
         return list(dict.fromkeys(found))
 
     def size(self) -> float:

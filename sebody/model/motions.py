@@ -17,7 +17,12 @@ SAMPLES = (0.137, 0.61, 1.13, 2.71)     # times at which rates given by a user a
 
 
 def motion(source: Source) -> TimeFunction:
-    """The motion of a drive: a position and its first two derivatives, less its value at t = 0.
+    """The motion of a drive, see `history`, less its value at t = 0."""
+    return history(source).from_zero()
+
+
+def history(source: Source) -> TimeFunction:
+    """The motion of a drive as it is given: a position and its first two derivatives.
 
     Parameters
     ----------
@@ -39,13 +44,13 @@ def motion(source: Source) -> TimeFunction:
             source = replace(source, functions=(value, *rates))
         _check_rates(source.functions)
         _refuse_jumps(source)
-        return source.from_zero()
+        return source
     if callable(source):
         source = (source, *rates_of(source, MOTION))
     if is_function_with_rates(source):
         functions = tuple(compiled_history(f, MOTION) for f in source)
         _check_rates(functions)
-        return TimeFunction(functions=functions).from_zero()
+        return TimeFunction(functions=functions)
     if isinstance(source, Number):
         raise InputError(f"motion of a drive is the constant {inputs.shown(source)}: give a "
                          "table, a function of time or a ready profile, or fix the node")
@@ -53,7 +58,7 @@ def motion(source: Source) -> TimeFunction:
     if len(times) < 2:
         raise InputError("the motion of a drive has one row: give at least two rows (t, value), "
                          "or fix the node")
-    return spline_of(times, values, (0.0, 0.0)).from_zero().with_corners()
+    return spline_of(times, values, (0.0, 0.0)).with_corners()
 
 
 def _refuse_jumps(given: TimeFunction) -> None:

@@ -252,7 +252,7 @@ class Element:
     body: Superelement | None = None        # on all whose coordinates a load on a body acts
     point: BodyPoint | None = None  # of a contact; the body's coordinates come first
     path: OnPath | None = None      # of a point on a path; the body's coordinates come first
-    hidden: DofBlock | None = None  # an unknown that its equation determines, of ropes
+    hidden: DofBlock | None = None  # an unknown on no node, of ropes and sheaves
     shares: "Element | None" = None     # whose multipliers it adds to
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
     seen: int | None = None     # of friction along a path: piece whose tangent it reads
@@ -395,6 +395,12 @@ class Sheave(NamedTuple):
     node: Node
     radius: float           # [length]
     axis: NDArray           # unit vector, global axes at the start, (3,)
+    wheel: Element | None   # of one with inertia, which turns about its node
+
+    @property
+    def angle(self) -> DofBlock | None:
+        """The angle of the sheave relative to its node, of one with inertia."""
+        return None if self.wheel is None else self.wheel.hidden
 
 
 class RopePlace(NamedTuple):

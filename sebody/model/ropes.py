@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
+from sebody.model import motions
 from sebody.model.arguments import chosen_name, direction, dof_block, known, refuse_taken
+from sebody.model.histories import Source
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
 from sebody.model.parts import (
@@ -19,6 +23,7 @@ from sebody.model.parts import (
     DofBlock,
     Element,
     Joint,
+    Motion,
     Node,
     Rope,
     RopePlace,
@@ -27,17 +32,20 @@ from sebody.model.parts import (
     positions,
 )
 from sebody.model.rope_geometry import Span, spans_of
+from sebody.model.time_functions import TimeFunction
 
 Z = np.array([0.0, 0.0, 1.0])
 SIDES = {"+": 1.0, "-": -1.0}
 
 
 def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
-           axis: ArrayLike | str | None = None) -> Sheave:
+           axis: ArrayLike | str | None = None, inertia: float = 0.0) -> Sheave:
     """Sheave that ropes pass, or drum that they end on, with its centre on a node.
 
-    Its axis turns with the node. A rope passes it without resistance; at the first or last place of
-    a rope it is a drum, on which the rope is wound as the node turns about the axis.
+    Its axis turns with the node. Without inertia a rope passes it without resistance; at the first
+    or last place of a rope it is a drum, on which the rope is wound as the node turns about the
+    axis. With inertia it turns in a bearing without friction on its node, no rope slips on it, and
+    tensions on both sides differ by what accelerates it.
 
     Parameters
     ----------
@@ -49,6 +57,9 @@ def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
         Of the middle of the rope on it [length].
     axis : (3,) or 'x', 'y', 'z', optional
         In space; its direction says which sense is ``+``. In a plane it is z.
+    inertia : float
+        Moment of inertia about the axis, of what turns in the bearing [mass length^2]. Results are
+        ``<name>.angle`` and ``<name>.rate``, relative to the node. Its mass is the node's.
 
     Raises
     ------
@@ -75,12 +86,24 @@ def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
         raise InputError(f"{what} has no axis: give axis=, the direction it turns about")
     else:
         along = direction(model, axis, what, a)
-    model.sheaves[name] = Sheave(name, a, radius, along)
+    inertia = inputs.number(inertia, f"{what}: inertia", least=0.0)
+    wheel = _wheel(model, name, a, along, inertia) if inertia else None
+    model.sheaves[name] = Sheave(name, a, radius, along, wheel)
     return model.sheaves[name]
 
 
+def _wheel(model: Mechanism, name: str, node: Node, axis: NDArray, inertia: float) -> Element:
+    """The inertia of a sheave, which turns by an unknown of its own."""
+    angle = _hidden(f"{name}.angle", 0.0)
+    model.loads.append(Element(
+        chosen_name(model, None, f"wheel of {name}"), model.kind_of("rope_wheel"),
+        positions(angle) + (_turning(model, node),),
+        {"inertia": inertia, "n": axis[2:] if model.planar else axis}, hidden=angle.position))
+    return model.loads[-1]
+
+
 def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], stiffness: float,
-         damping: float = 0.0, length: float | None = None, pretension: float = 0.0,
+         damping: float = 0.0, length: float | Source = None, pretension: float = 0.0,
          wrap: str = "+") -> Rope:
     """Rope from a point over points and sheaves to a last point: it only pulls.
 
@@ -100,8 +123,10 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
         E A [force]: a rope of length L has the stiffness E A / L.
     damping : float
         c [force time].
-    length : float, optional
-        Without force [length]; by default that of its way at the start, with `pretension`.
+    length : float, table, function, tuple of three functions or ready profile, optional
+        Without force [length]; by default that of its way at the start, with `pretension`. A
+        history is that of a winch at the first place, with results ``winch of <name>.thrust``,
+        ``.power`` and ``.work``; one that begins at zero is added to the length at the start.
     pretension : float
         Tension at the start, in place of a length [force].
     wrap : str
@@ -127,22 +152,76 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
     stiffness = inputs.number(stiffness, f"{what}: stiffness", above=0.0)
     damping = inputs.number(damping, f"{what}: damping", least=0.0)
     pretension = inputs.number(pretension, f"{what}: pretension", least=0.0)
-    if length is not None:
-        length = inputs.number(length, f"{what}: length", above=0.0)
-        if pretension:
-            raise InputError(f"{what} has a length and a pretension: leave one of them out")
+    material, winch = _length(what, length, pretension)
     made, spans = spans_of(what, found, _signs(what, wrap, found))
+    if winch is not None and made[0].sheave is not None:
+        raise InputError(f"{what} has a history of its length and begins on a drum: give a node as "
+                         "its first place, or turn the drum")
     way = sum(span.length for span in spans) + sum(
         abs(place.radius) * place.wrap for place in made[1:-1])
-    material = way / (1.0 + pretension / stiffness) if length is None else length
+    material = material or way / (1.0 + pretension / stiffness)
     name = chosen_name(model, name, ROPE)
-    stretch = _stretch(model, name, made, spans, way, {
-        "stiffness": stiffness, "damping": damping, "material": material})
-    grips = _drums(model, name, made, spans, stretch)
+    numbers = {"stiffness": stiffness, "damping": damping}
+    ends = [0, *(k for k, place in enumerate(made[1:-1], 1) if _holds(place)), len(made) - 1]
+    stretches, grips = [], []
+    for k, (i, j) in enumerate(pairwise(ends)):
+        own = name if len(ends) == 2 else f"{name}[{k}]"
+        part = _Part(own, made[i:j + 1], spans[i:j], winch is not None and i == 0)
+        stretches.append(_stretch(model, part, numbers | {
+            "material": part.way * material / way}))
+        grips += _grips(model, part, stretches[-1])
+    equations = [one for stretch in stretches for one in (stretch.law, *stretch.spans)] + grips
     first, last = made[0].node, made[-1].node
-    model.joints.append(Joint(name, (stretch.law, *stretch.spans, *grips), first, last, None, ROPE))
-    model.ropes[name] = Rope(name, tuple(made), (stretch,), None)
+    model.joints.append(Joint(name, tuple(equations), first, last, None, ROPE))
+    given = None
+    if winch is not None:
+        place = stretches[0].law.attachments[1]
+        given = place.dof_block
+        given.motions.append(Motion(chosen_name(model, None, f"winch of {name}"), np.ones(1),
+                                    winch, place))
+    model.ropes[name] = Rope(name, tuple(made), tuple(stretches), given)
     return model.ropes[name]
+
+
+class _Part(NamedTuple):
+    """A part of a rope between places that hold it."""
+
+    name: str
+    places: list[RopePlace]
+    spans: list[Span]
+    winch: bool         # whether a winch is at its first end
+
+    @property
+    def arcs(self) -> list[float]:
+        """Arcs on its sheaves at the start; none at the ends, which hold it."""
+        return [0.0, *(abs(place.radius) * place.wrap for place in self.places[1:-1])]
+
+    @property
+    def way(self) -> float:
+        """Its length at the start."""
+        return sum(span.length for span in self.spans) + sum(self.arcs)
+
+
+def _length(what: str, length: float | Source, pretension: float
+            ) -> tuple[float, TimeFunction | None]:
+    """The length of a rope at the start, zero by its way, and the history of its winch, if any."""
+    if length is None:
+        return 0.0, None
+    history = None
+    if isinstance(length, TimeFunction) or callable(length) or isinstance(length, list | tuple):
+        given = motions.history(length)
+        length, history = float(given.at(0.0)[0]), given.from_zero()
+        if length == 0.0:
+            return 0.0, history
+    length = inputs.number(length, f"{what}: length", above=0.0)
+    if pretension:
+        raise InputError(f"{what} has a length and a pretension: leave one of them out")
+    return length, history
+
+
+def _holds(place: RopePlace) -> bool:
+    """Tell whether a place on the way of a rope holds it: a sheave with inertia."""
+    return place.sheave is not None and place.sheave.wheel is not None
 
 
 def _place(model: Mechanism, what: str, place: Node | Sheave | str
@@ -178,21 +257,21 @@ def _hidden(name: str, value: float, fixed: bool = False) -> Node:
     return Node(name, np.zeros(0), block, None)
 
 
-def _stretch(model: Mechanism, name: str, places: Sequence[RopePlace], spans: Sequence[Span],
-             way: float, constants: dict[str, float]) -> Stretch:
-    """The equations of a stretch with one tension, whose ends are its first and last place."""
-    arcs = [abs(place.radius) * place.wrap for place in places]
-    arcs[0] = arcs[-1] = 0.0
-    lengths = _hidden(f"{name}.length", way)
-    ends = [_hidden(f"{name}.{end}", 0.0, fixed=True) if place.sheave is None else
-            _hidden(f"{name}.{end}", 0.0) for end, place in zip(
-                ("first end", "last end"), (places[0], places[-1]), strict=True)]
-    given = {f"given_{end}": -float(place.sheave is not None) for end, place in zip(
-        "ab", (places[0], places[-1]), strict=True)}
+def _stretch(model: Mechanism, part: _Part, constants: dict[str, float]) -> Stretch:
+    """The equations of a part of a rope with one tension."""
+    name, arcs = part.name, part.arcs
+    lengths = _hidden(f"{name}.length", part.way)
+    ends, given = [], {}
+    for letter, end, place in zip("ab", ("first", "last"), (part.places[0], part.places[-1]),
+                                  strict=True):
+        winch = part.winch and letter == "a"
+        ends.append(_hidden(f"{name}.{end} end", 0.0, fixed=place.sheave is None))
+        given[f"given_{letter}"] = 1.0 * winch - (place.sheave is not None)
     law = Element(name, model.kind_of("rope"), positions(lengths, *ends), constants | given, 1,
                   hidden=lengths.position)
-    elements = [_span(model, name, span, law, arcs[k], (0 < k, k + 1 < len(spans)))
-                for k, span in enumerate(spans)]
+    count = len(part.spans)
+    elements = [_span(model, name, span, law, arcs[k], (0 < k, k + 1 < count))
+                for k, span in enumerate(part.spans)]
     return Stretch(law, tuple(elements))
 
 
@@ -216,19 +295,22 @@ def _span(model: Mechanism, name: str, span: Span, law: Element, arc: float,
                    + tuple(_turning(model, end.node) for end in on), constants, 0, shares=law)
 
 
-def _drums(model: Mechanism, name: str, places: Sequence[RopePlace], spans: Sequence[Span],
-           stretch: Stretch) -> list[Element]:
-    """Equations of what drums at the ends have taken up."""
-    found = []
+def _grips(model: Mechanism, part: _Part, stretch: Stretch) -> list[Element]:
+    """Equations of what sheaves at the ends of a part have taken up."""
+    found, (places, spans) = [], part[1:3]
     for k, (place, other, span, sign) in enumerate((
             (places[0], places[1], spans[0], 1.0), (places[-1], places[-2], spans[-1], -1.0))):
         if place.sheave is None:
             continue
-        taken = stretch.law.attachments[1 + k]
+        taken, wheel = stretch.law.attachments[1 + k], place.sheave.wheel
+        angle = wheel.attachments[0] if wheel is not None else Attachment(
+            _hidden(f"{part.name}.angle {k}", 0.0, fixed=True), "position")
+        radius = sign * place.radius
+        about = float(np.sign(place.normal @ place.sheave.axis))
         found.append(Element(
-            name, model.kind_of("rope_grip"),
-            positions(place.node, other.node) + (taken, _turning(model, place.node)),
-            {"r_a": sign * place.radius, "r_b": sign * other.radius,
+            part.name, model.kind_of("rope_grip"),
+            positions(place.node, other.node) + (taken, angle, _turning(model, place.node)),
+            {"r_a": radius, "r_b": sign * other.radius, "turn": about * radius,
              **_axes(model, "a", sign * span.direction, place.normal)}, 1,
             hidden=taken.dof_block))
     return found

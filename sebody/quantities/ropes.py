@@ -1,6 +1,6 @@
-"""Formulas of ropes: tensions, lengths, elongation."""
+"""Formulas of ropes and sheaves: tensions, lengths, elongation, angles."""
 
-from sebody.model.parts import Rope, Stretch
+from sebody.model.parts import Rope, Sheave, Stretch
 from sebody.quantities.algebra import total
 from sebody.quantities.expressions import Number
 from sebody.quantities.numbers import Numbers, Parts
@@ -9,6 +9,18 @@ from sebody.quantities.numbers import Numbers, Parts
 def ropes(of: Parts) -> dict[str, Rope]:
     """Ropes by name."""
     return of.model.ropes
+
+
+def sheaves(of: Parts) -> dict[str, Sheave]:
+    """Sheaves with inertia, by name."""
+    return {name: one for name, one in of.model.sheaves.items() if one.wheel is not None}
+
+
+def turned(of: Numbers, name: str, part: str) -> Number:
+    """Angle of a sheave about its axis relative to its node, or the rate of this."""
+    angle = of.model.sheaves[name].angle
+    assert angle is not None
+    return of.coordinates(part, angle)[0]
 
 
 def tension(of: Numbers, name: str) -> list[Number]:

@@ -17,8 +17,8 @@ from sebody.quantities.algebra import total
 from sebody.quantities.numbers import Numbers, Parts
 
 FE_NODE = "node inside a body"
-OPTIONAL = PRESSING, SLIDING, COUPLED, ROPE, SIGNAL, CONTROLLER, OUTPUT = (     # if there are some
-    "contact, stop or friction", "joint on a path", "coupling", "rope",
+OPTIONAL = PRESSING, SLIDING, COUPLED, ROPE, SHEAVE, SIGNAL, CONTROLLER, OUTPUT = (  # told if any
+    "contact, stop or friction", "joint on a path", "coupling", "rope", "sheave with inertia",
     "sensor, signal or actuator",
     "controller", "output of a body")
 
@@ -193,6 +193,10 @@ ROPES = {
     "length": Quantity(ropes.length, "length"),
     "elongation": Quantity(ropes.elongation, "length"),
 }
+SHEAVES = {
+    "angle": Quantity(lambda of, owner: ropes.turned(of, owner, "q")),
+    "rate": Quantity(lambda of, owner: ropes.turned(of, owner, "v")),
+}
 
 
 def _effort(formula: Callable[..., Any], has: Callable[..., bool]) -> dict[str, Quantity]:
@@ -221,6 +225,7 @@ OWNERS = (
     Owner("node of a body", "of <body>.<node> {quantities}", forces.nodes_of_bodies, NODE_OF_BODY),
     Owner(SLIDING, "of joints on paths {quantities}", paths.sliding, PATH_JOINT),
     Owner(ROPE, "of ropes {quantities}", ropes.ropes, ROPES),
+    Owner(SHEAVE, "of sheaves with inertia {quantities}", ropes.sheaves, SHEAVES),
     Owner("joint", "of joints {quantities}", motion.joints, JOINT),
     Owner("drive", "of drives {quantities}", forces.drives, DRIVE),
     Owner(COUPLED, "of couplings {quantities}", forces.couplings, COUPLING),

@@ -28,11 +28,13 @@ def hoist() -> Model:
 FOREIGN = hoist().sheaves["head"]
 NEW, ROPE = "sheave 'new'", "rope 'line'"
 CASES = {
-    "sheave": Right(Model.sheave, {"name": "new", "node": "a", "radius": 0.1, "axis": Z}, {
+    "sheave": Right(Model.sheave, {"name": "new", "node": "a", "radius": 0.1, "axis": Z,
+                                 "inertia": 0.2}, {
         "name": [*are("name of a sheave", *NO_NAME),
                  ("head", "sheave 'head' is there already: give another name"),
                  ("a", "sheave cannot be called 'a': a node has that name")],
         "node": nodes(foreign, lacks_place), "radius": positive(f"{NEW}: radius"),
+        "inertia": not_negative(f"{NEW}: inertia"),
         "axis": [(None, f"{NEW} has no axis: give axis=, the direction it turns about"),
                  *[pair for pair in vectors("axis of the sheave 'new' at 'a'", 3)
                    if pair[0] is not None],
@@ -55,7 +57,9 @@ CASES = {
                    *have("have axes that are not parallel", ["a", "across", "head"])],
         "stiffness": positive(f"{ROPE}: stiffness"),
         "damping": not_negative(f"{ROPE}: damping"),
-        "length": [*[pair for pair in positive(f"{ROPE}: length") if pair[0] is not None],
+        "length": [*[pair for pair in positive(f"{ROPE}: length")
+                     if pair[0] is not None and pair[0] != [1.0]],
+                   *have("motion of a drive", [(0.0, float("nan"))]),
                    (8.0, f"{ROPE} has a length and a pretension: leave one of them out")],
         "pretension": not_negative(f"{ROPE}: pretension"),
         "wrap": are(f"{ROPE}: wrap", None, "", "x", "+-", 3, ["+"], also=": give '+' or '-'")}),

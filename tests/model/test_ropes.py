@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, simulate
+from sebody import InputError, Model, generalized_alpha, simulate
 from sebody.analysis import equilibrium
 from sebody.model.variants import planar
 
@@ -59,6 +59,41 @@ def test_machine_of_atwood(form):
         assert heights(model, result, name) == pytest.approx(start + way, abs=1e-10)
     assert result["rope.tension"] == pytest.approx(np.full((len(result.t), 2), pull), rel=1e-9)
     assert result["rope.length"] == pytest.approx(5.0 + 0.2 * np.pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("form", ["space", "plane", "planar form"])
+def test_machine_of_atwood_with_an_inert_sheave(form):
+    """``a = (m - M) g / (m + M + J/r^2)``; the rope is so stiff that it hardly swings."""
+    (m, M), J, r, flat = (3.0, 1.2), 0.05, 0.2, form == "plane"
+    model = hung({"p": (0, 0), "a": (-r, -2), "b": (r, -4)}, {"a": m, "b": M}, flat=flat)
+    model.sheave("wheel", "p", r, inertia=J, **({} if flat else {"axis": TURN[:, 2]}))
+    rate = (m - M) * G / (m + M + J / r**2)
+    tensions = m * (G - rate), M * (G + rate)
+    model.rope("rope", ("a", "wheel", "b"), 2e10, damping=1e7, pretension=sum(tensions) / 2,
+               wrap="-")
+    if form == "planar form":
+        model = planar(model).model
+    result = simulate(model, 0.01, 0.8, scheme=generalized_alpha(index=3))
+    sunk = rate * result.t**2 / 2
+    assert heights(model, result, "a") == pytest.approx(-2.0 - sunk, abs=1e-8)
+    assert result["wheel.angle"] == pytest.approx(sunk / r, abs=1e-7)
+    assert result["rope.tension"][-1] == pytest.approx(tensions, rel=1e-5)
+    assert result["wheel.rate"][-1] == pytest.approx(rate * 0.8 / r, rel=1e-6)
+
+
+def test_work_of_a_winch_is_the_energy():
+    """A load that is hauled up from rest to rest, less what damping takes."""
+    model = hung({"p": (0, 0), "a": (0, -3)}, {"a": 20.0})
+    model.rope("rope", ("p", "a"), 2e5, damping=2e3, pretension=20.0 * G,
+               length=lambda t: -2.0 * (t / 2)**3 * (10 - 15 * t / 2 + 6 * (t / 2)**2))
+    result = simulate(model, 5e-4, 2.0)
+    energy = sum(result[f"energy.{kind}"] for kind in ("kinetic", "strain", "potential"))
+    work = result["winch of rope.work"]
+    assert energy - energy[0] == pytest.approx(work + result["rope.work"], abs=1e-8 * work[-1])
+    raised = heights(model, result, "a")[-1] + 3.0
+    length = result["rope.length"][-1] - result["rope.elongation"][-1]
+    assert length == pytest.approx(3.0 / (1.0 + 20.0 * G / 2e5) - 2.0, rel=1e-12)
+    assert work[-1] + result["rope.work"][-1] == pytest.approx(20.0 * G * raised, rel=1e-3)
 
 
 def tangent_length(points, radii, signs):

@@ -12,7 +12,7 @@ from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import ROPE, Axes, Element, Joint, positions, rotations
 from sebody.model.variants.flat_contacts import LAWS, flat_places, sign_of_angle
-from sebody.model.variants.flat_ropes import ROPE_KINDS, rope_equation, sharing
+from sebody.model.variants.flat_ropes import ROPE_KINDS, flat_wheel, rope_equation, sharing
 from sebody.model.variants.flattening import Flattening
 
 PARALLEL = 1e-9         # one less the cosine of an angle that is rounding
@@ -59,8 +59,9 @@ def flat_element(flat: Flattening, element: Element) -> Element:
     if element.kind not in ELEMENTS:
         raise InputError(f"{element.name!r} {_unknown(element.kind, 'ELEMENTS')}")
     kind, constants = ELEMENTS[element.kind](flat, element)
+    hidden = None if element.hidden is None else flat.dof_block(element.hidden)
     return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,
-                   time_function=element.time_function)
+                   time_function=element.time_function, hidden=hidden)
 
 
 def flat_joint(flat: Flattening, joint: Joint) -> Joint:
@@ -280,4 +281,5 @@ ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
     "torsion_spring": _torsion_spring, "bushing": _bushing, "bearing": _bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
-    "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged}
+    "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged,
+    "rope_wheel": flat_wheel}

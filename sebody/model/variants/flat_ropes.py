@@ -37,6 +37,12 @@ def rope_equation(flat: Flattening, joint: Joint, one: Element) -> Element:
                    constants, one.multipliers, one.time_function, hidden=hidden)
 
 
+def flat_wheel(flat: Flattening, one: Element) -> tuple[str, dict]:
+    """Kind and constants of the inertia of a sheave in the plane."""
+    side = flat.axial(one.vector("n"), f"the axis of {one.name!r}")
+    return "planar_rope_wheel", {"inertia": one.number("inertia"), "n": np.array([side])}
+
+
 def _side(flat: Flattening, one: Element, letter: str) -> float:
     """The sign that a radius takes where its sheave is seen from the other side."""
     seen = letter if f"e1_{letter}" in one.constants else "a"
@@ -56,9 +62,11 @@ def flat_ropes(flat: Flattening, model: Mechanism, made: Mechanism) -> None:
     """Add sheaves and ropes, whose equations are there already."""
     joints = {joint.name: joint for joint in made.joints}
     for sheave in model.sheaves.values():
+        wheel = None if sheave.wheel is None else next(
+            load for load in made.loads if load.name == sheave.wheel.name)
         made.sheaves[sheave.name] = Sheave(
             sheave.name, flat.node(sheave.node), sheave.radius,
-            float(np.sign(flat.plane.normal @ sheave.axis)) * NORMAL)
+            float(np.sign(flat.plane.normal @ sheave.axis)) * NORMAL, wheel)
     for rope in model.ropes.values():
         old = next(joint for joint in model.joints if joint.name == rope.name)
         of = dict(zip(old.constraints, joints[rope.name].constraints, strict=True))

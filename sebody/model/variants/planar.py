@@ -154,7 +154,6 @@ class _Flat(NamedTuple):
             flat.dof_block(dof_block).motions = [flat.motion(motion)
                                                  for motion in dof_block.motions]
         made.joints = [flat_joint(flat, joint) for joint in model.joints]
-        flat_ropes(flat, model, made)
         made.rigid_bodies = {name: flat_element(flat, one)
                              for name, one in model.rigid_bodies.items()}
         joints = dict(zip(model.joints, made.joints, strict=True))
@@ -225,6 +224,7 @@ def _built(model: Mechanism, flat_model: _Flat) -> Mechanism:
                 load.name, body_load_kind(FRAMES[body.frame].kernel, True), body.attachments,
                 {"P": body.reduced.loads[load_name(load)]}, time_function=load.time_function,
                 body=body))
+    flat_ropes(flat_model.flat, model, made)
     add_control(model, made, flat_model.bodies)
     made.own_names, made.default_names = set(model.own_names), model.default_names.copy()
     made.beams = flat_beams(model, made, flat_model.flat)

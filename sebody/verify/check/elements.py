@@ -159,8 +159,9 @@ def hamilton(case: Case) -> float:
 def body_momentum(case: Case) -> float:
     """Momentum and its moment against ``dT/dv`` along rigid velocities (Noether)."""
     p, d = momenta(case), case.dimension
-    linear, moment, first = np.zeros(3), np.zeros(3), d * case.module.N_POSITIONS
-    for at in range(0, first, d) if case.n > 1 else ():     # rigid motions leave a way as it is
+    linear, moment, first = np.zeros(3), np.zeros(3), case.first_rotation
+    places = first == d * case.module.N_POSITIONS       # rigid motions leave scalars as they are
+    for at in range(0, first, d) if places else ():
         x, of_point = (np.r_[values[at:at + d], np.zeros(3 - d)] for values in (case.q, p))
         linear, moment = linear + of_point, moment + np.cross(x, of_point)
     if case.planar:

@@ -32,6 +32,8 @@ def apart(case: Case) -> Case:
     """The case with sheaves that do not overlap, whose planes are nearly that of the rope."""
     values = constants_of(case)
     own = {name: APART * value for name, value in values.items() if name in ("r_a", "r_b")}
+    if not own:
+        return case
     d = case.q[case.dimension:2 * case.dimension] - case.q[:case.dimension]
     for k, name in enumerate("ab"):
         if f"e1_{name}" not in values:
@@ -45,7 +47,7 @@ def apart(case: Case) -> Case:
         own[f"e1_{name}"] = ray / np.linalg.norm(ray)
         other = np.cross(np.cross(seen, across), own[f"e1_{name}"])
         own[f"e2_{name}"] = other / np.linalg.norm(other)
-    return changed(case._replace(v=SLOW * case.v), **own) if own else case
+    return changed(case._replace(v=SLOW * case.v), **own)
 
 
 def cases(case: Case) -> dict[str, Case]:
