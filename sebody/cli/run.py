@@ -5,7 +5,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from sebody.basics.errors import InputError, Interrupted, LimitWarning, SebodyError, SimulationError
 from sebody.cli import interrupts
@@ -14,6 +14,7 @@ from sebody.cli.scene_arguments import build_scene, check_distinct, check_pictur
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
+    from sebody.runs.phases import Course
     from sebody.runs.simulation import Simulation
     from sebody.scenes.scene import Scene
 
@@ -95,8 +96,10 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
     with interrupts.held():
         try:
-            result = (simulation.run_to(t_end, progress).result() if simulation else
-                      _within(scene, options, t_end, progress, start))
+            if simulation:
+                result = simulation.run_to(t_end, progress).result()
+            else:
+                result = _within(scene, options, t_end, progress, start)
         except (SimulationError, Interrupted) as stop:
             result = stop.result
             errors.append(str(stop))
@@ -106,7 +109,8 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
 
 def _simulation(scene: "Scene", options: argparse.Namespace,
-                start: "Result | None") -> "Simulation":
+                start: "Result | None") -> "Simulation | Course":
+    from sebody.runs.phases import Course
     from sebody.runs.restart import resume
     from sebody.runs.schemes import generalized_alpha
     from sebody.runs.simulation import Simulation
@@ -114,10 +118,13 @@ def _simulation(scene: "Scene", options: argparse.Namespace,
     if options.resume:
         return resume(scene.model, options.resume, options.threads)
     index = 3 if options.index is None else options.index
-    return Simulation(scene.model, _step(scene, options),
-                      generalized_alpha(_rho(options), index=index),
-                      1 if options.every is None else options.every,
-                      start=start, threads=options.threads)
+    scheme = generalized_alpha(_rho(options), index=index)
+    every = 1 if options.every is None else options.every
+    if scene.model.switches:
+        return Course(scene.model, _step(scene, options), scheme, every, None, start,
+                      options.threads)
+    return Simulation(scene.model, _step(scene, options), scheme, every, start=start,
+                      threads=options.threads)
 
 
 def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
@@ -156,13 +163,13 @@ def _t_end(scene: "Scene", options: argparse.Namespace) -> float:
     return t_end
 
 
-def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulation | None",
+def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulation | Course | None",
              result: "Result", errors: list[str]) -> tuple[list[str], list[str]]:
     """Write every file that is asked for, even if another one cannot be written."""
     from sebody.pictures.plots import save_picture
     from sebody.runs.restart import save_state
 
-    files = (("state", options.save, lambda path: save_state(simulation, path)),
+    files = (("state", options.save, lambda path: save_state(cast("Simulation", simulation), path)),
              ("histories", options.output, result.save),
              ("picture", options.plot,
               lambda path: save_picture(result, path, scene.base, scene.tip)))
@@ -194,6 +201,9 @@ def _check(options: argparse.Namespace, scene: "Scene") -> None:
             raise InputError(f"the picture shows node {name!r}, which scene {scene.name!r} does "
                              f"not have: give its Scene base= and tip=, of "
                              f"{', '.join(scene.model.nodes)}")
+    if options.save and scene.model.switches:
+        raise InputError(f"{next(iter(scene.model.switches))!r} of scene {scene.name!r} lets go or "
+                         "locks, and no state of such a run can be saved: leave out --save")
     if options.accuracy is not None:
         if options.save or options.resume:
             raise InputError("--accuracy repeats the run with finer steps: leave out --save and "

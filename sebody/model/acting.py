@@ -53,11 +53,6 @@ class Switch(NamedTuple):
         """Times at which it lets go or locks."""
         return tuple(t for t in self[:2] if 0.0 < t < math.inf)
 
-    @property
-    def breaks(self) -> bool:
-        """Tell whether it breaks at a force or moment, and lets go at no other quantity."""
-        return min(self.breaks_at) < math.inf and not self.release_when[0]
-
     def acts(self, t: float) -> bool:
         """Tell whether the part acts from a time on."""
         if self.until < self.from_:

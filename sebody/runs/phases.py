@@ -72,15 +72,15 @@ class Phase(Simulation):
         return float(self.now().energies[0, [KINETIC, STRAIN, POTENTIAL]].sum())
 
     def run_until(self, t: float, progress: Callable[[float], None] | None,
-                  thresholds: Sequence[Threshold] = ()) -> list[str]:
+                  thresholds: Sequence[Threshold] = ()) -> list[Threshold]:
         """Advance to a time at which a step ends, on the grid or not, or to a threshold.
 
         With thresholds, steps are taken one by one.
 
         Returns
         -------
-        list of str
-            Names of what breaks or lets go in the state reached.
+        list of Threshold
+            Those that are reached.
         """
         self.end_at(t)
         grid = int(np.floor(t / self.h + NEAR))
@@ -197,26 +197,28 @@ class Course:
                     break
                 t = min([*times, end])
                 share = None if progress is None else lambda part, t=t: progress(part * t / end)
-                broken = phase.run_until(t, share, thresholds)
-                self._broken |= set(broken)
-                if broken or times:
-                    self._switch(phase.time + NEAR * self.h if broken else t, broken)
+                reached = phase.run_until(t, share, thresholds)
+                if reached or times:
+                    self._switch(phase.time + NEAR * self.h if reached else t, reached)
         except (SimulationError, Interrupted) as error:
             raise type(error)(str(error), self.result()) from error
         return self
 
-    def _switch(self, t: float, broken: Sequence[str]) -> None:
+    def _switch(self, t: float, reached: Sequence[Threshold]) -> None:
         """Begin the next phase with what acts from a time on."""
         before = self.phases[-1]
+        self._broken |= {one.name for one in reached}
         acts = acting(self.model, t) - self._broken
-        gone, come = self._acting - acts - set(broken), acts - self._acting
-        breaking = {name for name in broken if self.model.switches[name].breaks}
+        gone, come = self._acting - acts, acts - self._acting
+        if not gone and not come:       # a time of what broke before
+            return
+        broke = {one.name for one in reached if one.did == "broke"}
         now = before.now()
         self._locked |= {joint.name: locked_as_now(joint, now) for joint in self.model.joints
                          if joint.name in come}
         model = phase_of(self.model, acts, self._locked)
         words = [f"{', '.join(sorted(names))} {did}" for names, did in (
-            (breaking, "broke"), (gone | set(broken) - breaking, "let go"), (come, "locked"))
+            (broke, "broke"), (gone - broke, "let go"), (come, "locked"))
             if names]
         try:
             phase = Phase(model, *self._how, None, self._threads, before)

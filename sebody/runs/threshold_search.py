@@ -60,12 +60,12 @@ class Search:
             np.copyto(kept, own)
         self._start = self.run.time
 
-    def reached(self) -> list[str]:
-        """Names of what is beyond its threshold in the state reached."""
-        return [one.name for one in self.thresholds if one.excess() > 0.0]
+    def reached(self) -> list[Threshold]:
+        """Thresholds that are passed in the state reached."""
+        return [one for one in self.thresholds if one.excess() > 0.0]
 
-    def found(self) -> list[str]:
-        """Names of what lets go in the last step; the run is at the instant then."""
+    def found(self) -> list[Threshold]:
+        """Thresholds that are passed first in the last step; the run is at that instant then."""
         if not self.reached():
             return []
         t, h = self.run.time, self.run.h
@@ -77,7 +77,7 @@ class Search:
         else:
             t = self._start
         excess = self._beyond(t)
-        return [one.name for one in self.thresholds
+        return [one for one in self.thresholds
                 if one.excess() >= min(excess, 0.0) - TOGETHER]
 
     def _beyond(self, t: float) -> float:

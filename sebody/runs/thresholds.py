@@ -35,6 +35,7 @@ class Threshold(NamedTuple):
 
     name: str
     excess: Excess
+    did: str        # in words, when it is reached
 
 
 def thresholds_of(model: Mechanism, acts: set[str], read: Callable[[str], float | NDArray]
@@ -56,10 +57,11 @@ def thresholds_of(model: Mechanism, acts: set[str], read: Callable[[str], float 
         switch = model.switches[name]
         for kind, limit in zip(("force", "moment"), switch.breaks_at, strict=True):
             if limit < math.inf:
-                found.append(Threshold(name, Excess(read, f"{name}.{kind}", ">", limit)))
+                found.append(Threshold(name, Excess(read, f"{name}.{kind}", ">", limit),
+                                       "broke"))
         quantity, passes, limit = switch.release_when
         if quantity:
-            found.append(Threshold(name, Excess(read, quantity, passes, limit)))
+            found.append(Threshold(name, Excess(read, quantity, passes, limit), "let go"))
             if np.size(_read(name, read, quantity)) != 1:
                 raise InputError(f"{name!r}: release_when reads {quantity!r}, which is several "
                                  f"numbers: give one of them, such as {quantity}.x or "

@@ -278,6 +278,11 @@ def test_fixed_steps_end_where_it_breaks(scheme):
     assert np.abs(orders - 2.0).max() < 0.25
 
 
+def test_a_time_of_what_broke_is_past():
+    run = simulate(pendulum(True, breaks_at=FORCE, until=0.55), 0.01, 0.6)
+    assert [event.what for event in run.events] == ["weld broke"]
+
+
 def test_a_latch_lets_go_at_an_angle():
     """As the sensor says; a quantity that falls, a moment that breaks, and all in one run."""
     model = pendulum(True, release_when="swing < -0.3")

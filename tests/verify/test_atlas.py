@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from sebody import LimitWarning, Simulation, generalized_alpha, hht
+from sebody import LimitWarning, Simulation, generalized_alpha, hht, simulate
 from sebody.catalogue import kernel_files, scenes
 from sebody.cli.entry import main
 from sebody.runs.limits.watch import spin_limit
@@ -99,7 +99,7 @@ def warned(run):
 def test_regular_scenes_are_not_warned(name):
     scene = import_module(f"sebody.scenes.{name.replace('-', '_')}").build()
     t_end = min(scene.t_end, 400 * scene.h) if name in ("four-bar", "squeezer") else scene.t_end
-    assert warned(lambda: Simulation(scene.model, scene.h).run_to(t_end).result()) == []
+    assert warned(lambda: simulate(scene.model, scene.h, t_end)) == []
 
 
 def test_spin_is_warned_of_once():
