@@ -1,6 +1,6 @@
 """Formulas of ropes and sheaves: tensions, lengths, elongation, angles."""
 
-from sebody.model.parts import Rope, Sheave, Stretch
+from sebody.model.parts import Element, Rope, RopePlace, Sheave, Stretch
 from sebody.quantities.algebra import total
 from sebody.quantities.expressions import Number
 from sebody.quantities.numbers import Numbers, Parts
@@ -21,6 +21,11 @@ def turned(of: Numbers, name: str, part: str) -> Number:
     angle = of.model.sheaves[name].angle
     assert angle is not None
     return of.coordinates(part, angle)[0]
+
+
+def passes(of: Parts, name: str) -> bool:
+    """Tell whether a rope passes sheaves between its ends."""
+    return any(place.sheave is not None for place in of.model.ropes[name].places[1:-1])
 
 
 def tension(of: Numbers, name: str) -> list[Number]:
@@ -44,3 +49,24 @@ def _elongation(of: Numbers, stretch: Stretch) -> Number:
     law = stretch.law
     s, a, b = (of.coordinates("q", block)[0] for block in law.dof_blocks)
     return (s - law.number("material") - law.number("given_a") * a - law.number("given_b") * b)
+
+
+def wraps(of: Numbers, name: str) -> list[Number]:
+    """Angles of contact on the sheaves that a rope passes, in its order.
+
+    Negative where the rope should have left the sheave, on which it is still held here.
+    """
+    rope = of.model.ropes[name]
+    spans = [span for stretch in rope.stretches for span in stretch.spans]
+    found = []
+    for k, place in enumerate(rope.places[1:-1], 1):
+        if place.sheave is not None:
+            turned = _angle(of, spans[k], place) - _angle(of, spans[k - 1], place)
+            found.append(place.wrap + (1.0 if place.radius > 0 else -1.0) * turned)
+    return found
+
+
+def _angle(of: Numbers, span: Element, place: RopePlace) -> Number:
+    """Angle that a span keeps at one of its sheaves."""
+    at = 0 if span.attachments[0].node is place.node else 1
+    return of.recorded("frames", of.numbering.memories[span][at])

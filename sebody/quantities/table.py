@@ -192,6 +192,7 @@ ROPES = {
     "tension": Quantity(ropes.tension, "force", numbered=True),
     "length": Quantity(ropes.length, "length"),
     "elongation": Quantity(ropes.elongation, "length"),
+    "wraps": Quantity(ropes.wraps, numbered=True, has=ropes.passes),
 }
 SHEAVES = {
     "angle": Quantity(lambda of, owner: ropes.turned(of, owner, "q")),

@@ -32,6 +32,7 @@ from sebody.runs.first_run import prepare
 from sebody.runs.given_start import energy_lost, take
 from sebody.runs.initial_state import begin, hold
 from sebody.runs.initial_velocities import refuse_contradicted
+from sebody.runs.limits.rope_contact import off_sheaves
 from sebody.runs.limits.watch import Watch
 from sebody.runs.planning import Plan, StepLog
 from sebody.runs.pulses import divided, unseen, untold
@@ -334,6 +335,8 @@ class Simulation:
                          self.rows.all(), self.seconds, self.failure, self.start)
         if self.plan.seconds:
             results.all_seconds = self.plan.seconds + self.seconds
+        for key, message in off_sheaves(results).items():
+            self.watch.say(key, message)
         results.warnings = (self.watch.judge(results) if results.steps else
                             tuple(self.watch.messages))
         return results

@@ -5,8 +5,9 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, generalized_alpha, simulate
+from sebody import InputError, LimitWarning, Model, generalized_alpha, simulate
 from sebody.analysis import equilibrium
+from sebody.fem import rectangle
 from sebody.model.variants import planar
 
 TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
@@ -212,6 +213,50 @@ def test_equilibrium_of_a_hanging_ring():
     assert found["rope.tension"][-1] == pytest.approx([pull, pull], rel=1e-8)
     assert (one + other)[0] == pytest.approx(0.0, abs=1e-9)
     assert found["rope.elongation"][-1] == pytest.approx(2.8 * pull / 5e4, rel=1e-7)
+
+
+def test_a_rope_that_should_leave_its_sheave_is_told():
+    """A weight swings up until its rope is straight past the sheave."""
+    model = hung({"a": (-1, -0.2), "p": (0, 0), "b": (1, -0.2)}, {"b": 1.0}, {"p": 0.1})
+    model.initial_velocity("b", TURN @ (0, 4.0, 0))
+    model.rope("rope", ("a", "wheel p", "b"), 1e4, pretension=5.0, wrap="-")
+    with pytest.warns(LimitWarning, match="rope 'rope' should have left sheave 'wheel p' at t ="):
+        result = simulate(model, 1e-3, 0.22)
+    wraps, ends = result["rope.wraps"], result["b.position"]
+    first, last = ((TURN.T @ (ends[k] - AT))[:2] for k in (0, -1))
+    assert wraps[0] > 0 > wraps[-1]
+
+    def leaving(end):
+        return np.arctan2(end[1], end[0]) + np.arcsin(0.1 / np.linalg.norm(end))
+    assert (wraps[0] - wraps[-1]).item() == pytest.approx(leaving(last) - leaving(first), abs=1e-9)
+
+
+def test_three_falls_on_a_flexible_boom():
+    """Against the least energy of the boom's tip and the load, with a rope of the same length."""
+    section = rectangle(0.2, 0.1, youngs_modulus=7e10, poisson_ratio=0.3, density=2700.0)
+    model = Model()
+    for name, point in (("root", (0, 0, 0)), ("tip", (4, 0, 0))):
+        model.node(name, turned(*point))
+    model.beam("boom", ("root", "tip"), section, elements=4, bodies=1, modes=2, up=TURN[:, 2])
+    model.fix("root")
+    stiffness, mass, drop, weight = 3e5, 150.0, 3.0, 150.0 * G
+    model.node("hook", turned(4, -drop), "translation")
+    model.point_mass("load", "hook", mass)
+    model.rope("rope", ("tip", "hook", "tip", "hook"), stiffness, length=3 * drop)
+    bare = Model()
+    for name, point in (("root", (0, 0, 0)), ("tip", (4, 0, 0))):
+        bare.node(name, turned(*point))
+    bare.beam("boom", ("root", "tip"), section, elements=4, bodies=1, modes=2, up=TURN[:, 2])
+    bare.fix("root")
+    for made in (model, bare):
+        made.gravity(TURN @ (0, -G, 0))
+    bare.force("tip", TURN @ (0, -1, 0), weight)
+    found, pressed = equilibrium(model), equilibrium(bare)
+    assert found["tip.position"][-1] == pytest.approx(pressed["tip.position"][-1], abs=1e-9)
+    pull = weight / 3
+    gap = found["tip.position"][-1] - found["hook.position"][-1]
+    assert np.linalg.norm(gap) == pytest.approx(drop * (1 + pull / stiffness), rel=1e-9)
+    assert found["rope.tension"][-1] == pytest.approx(3 * [pull], rel=1e-9)
 
 
 @pytest.mark.parametrize("places, wrap, said", [
