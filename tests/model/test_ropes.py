@@ -227,7 +227,7 @@ def test_a_rope_that_should_leave_its_sheave_is_told():
     assert wraps[0] > 0 > wraps[-1]
 
     def leaving(end):
-        return np.arctan2(end[1], end[0]) + np.arcsin(0.1 / np.linalg.norm(end))
+        return np.arctan2(end[1], end[0]) - np.arcsin(0.1 / np.linalg.norm(end))
     assert (wraps[0] - wraps[-1]).item() == pytest.approx(leaving(last) - leaving(first), abs=1e-9)
 
 
