@@ -28,7 +28,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import inverse_3
+from sebody.kernels.dense import columns_times, inverse_3
 from sebody.kernels.frame_search import converged_mean
 from sebody.kernels.rotations import inverse_tangent_coefficients
 
@@ -38,6 +38,9 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CARRIERS = 1         # nodes behind those of the body: that of the surface
 CONSTANTS = FRAME_CONSTANTS + (
+    Part("Hx", ("n", "n"), "second derivatives of the displacement along x", columns=True),
+    Part("Hy", ("n", "n"), "second derivatives of the displacement along y", columns=True),
+    Part("Hz", ("n", "n"), "second derivatives of the displacement along z", columns=True),
     Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each"),
     Part("point", ("D",), "the point in the undeformed frame [length]"),
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
@@ -65,9 +68,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 17
-OPERATIONS = {"residual": (348, 144, 273, 0),
-              "column": (830, 237, 828, 0)}
+WORK_ROWS = 23
+OPERATIONS = {"residual": (348, 180, 309, 3),
+              "column": (830, 330, 921, 3)}
 
 
 @kernel_function
@@ -84,18 +87,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     y = at(work, 2*row)
     e0s = at(work, 3*row)
     e1s = at(work, 4*row)
-    yd = at(work, 5*row)
-    eta = at(work, 6*row)
-    s = at(work, 7*row)
-    h = at(work, 8*row)
-    dqe = at(work, 9*row)
-    dve = at(work, 10*row)
-    dy = at(work, 11*row)
-    dyd = at(work, 12*row)
-    deta = at(work, 13*row)
-    dg = at(work, 14*row)
-    ds = at(work, 15*row)
-    dh = at(work, 16*row)
+    bent_x = at(work, 5*row)
+    bent_y = at(work, 6*row)
+    bent_z = at(work, 7*row)
+    yd = at(work, 8*row)
+    eta = at(work, 9*row)
+    s = at(work, 10*row)
+    h = at(work, 11*row)
+    dqe = at(work, 12*row)
+    dve = at(work, 13*row)
+    dy = at(work, 14*row)
+    dbent_x = at(work, 15*row)
+    dbent_y = at(work, 16*row)
+    dbent_z = at(work, 17*row)
+    dyd = at(work, 18*row)
+    deta = at(work, 19*row)
+    dg = at(work, 20*row)
+    ds = at(work, 21*row)
+    dh = at(work, 22*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)
@@ -105,7 +114,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        Phi = at(X, 3*N_POSITIONS)
+        Hx = at(X, 3*N_POSITIONS)
+        Hy = at(Hx, n*padded(n))
+        Hz = at(Hy, n*padded(n))
+        Phi = at(Hz, n*padded(n))
         point = at(Phi, 3*n)
         law = at(point, 3)
         g = at(forces, element*width)
@@ -148,6 +160,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             qm = qe[k]
             y[k] = qm
+        # change of the shapes, Hx y
+        columns_times(Hx, y, bent_x, n, n)
+        # change of the shapes, Hy y
+        columns_times(Hy, y, bent_y, n, n)
+        # change of the shapes, Hz y
+        columns_times(Hz, y, bent_z, n, n)
         # displacement of the point by positions
         up_x = up_y = up_z = 0.0
         for i in range(N_POSITIONS):
@@ -159,9 +177,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            up_x += Phi_positionx_x*u_x + Phi_positiony_x*u_y + Phi_positionz_x*u_z
-            up_y += Phi_positionx_y*u_x + Phi_positiony_y*u_y + Phi_positionz_y*u_z
-            up_z += Phi_positionx_z*u_x + Phi_positiony_z*u_y + Phi_positionz_z*u_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            up_x += (u_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + u_y*(Phi_positiony_x +
+                (0.5)*bent_x_positiony) + u_z*(Phi_positionz_x + (0.5)*bent_x_positionz))
+            up_y += (u_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + u_y*(Phi_positiony_y +
+                (0.5)*bent_y_positiony) + u_z*(Phi_positionz_y + (0.5)*bent_y_positionz))
+            up_z += (u_x*(Phi_positionx_z + (0.5)*bent_z_positionx) + u_y*(Phi_positiony_z +
+                (0.5)*bent_z_positiony) + u_z*(Phi_positionz_z + (0.5)*bent_z_positionz))
         # displacement of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -172,16 +202,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            up_x += Phi_rotationx_x*psi_x + Phi_rotationy_x*psi_y + Phi_rotationz_x*psi_z
-            up_y += Phi_rotationx_y*psi_x + Phi_rotationy_y*psi_y + Phi_rotationz_y*psi_z
-            up_z += Phi_rotationx_z*psi_x + Phi_rotationy_z*psi_y + Phi_rotationz_z*psi_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            up_x += (psi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx) + psi_y*(Phi_rotationy_x +
+                (0.5)*bent_x_rotationy) + psi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+            up_y += (psi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx) + psi_y*(Phi_rotationy_y +
+                (0.5)*bent_y_rotationy) + psi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+            up_z += (psi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx) + psi_y*(Phi_rotationy_z +
+                (0.5)*bent_z_rotationy) + psi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
         # displacement of the point by modes
         for k in range(MODES, n):
             ym = y[k]
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            up_x += Phi_mode_x*ym
-            up_y += Phi_mode_y*ym
-            up_z += Phi_mode_z*ym
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            up_x += ym*(Phi_mode_x + (0.5)*bent_x_mode)
+            up_y += ym*(Phi_mode_y + (0.5)*bent_y_mode)
+            up_z += ym*(Phi_mode_z + (0.5)*bent_z_mode)
         # arm of the point in the frame
         Xp_x, Xp_y, Xp_z = point[0], point[1], point[2]
         rp_x = Xp_x + up_x
@@ -298,10 +343,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            upd_x += Phi_positionx_x*eu_x + Phi_positiony_x*eu_y + Phi_positionz_x*eu_z
-            upd_y += Phi_positionx_y*eu_x + Phi_positiony_y*eu_y + Phi_positionz_y*eu_z
-            upd_z += Phi_positionx_z*eu_x + Phi_positiony_z*eu_y + Phi_positionz_z*eu_z
+            upd_x += (eu_x*(Phi_positionx_x + bent_x_positionx) + eu_y*(Phi_positiony_x +
+                bent_x_positiony) + eu_z*(Phi_positionz_x + bent_x_positionz))
+            upd_y += (eu_x*(Phi_positionx_y + bent_y_positionx) + eu_y*(Phi_positiony_y +
+                bent_y_positiony) + eu_z*(Phi_positionz_y + bent_y_positionz))
+            upd_z += (eu_x*(Phi_positionx_z + bent_z_positionx) + eu_y*(Phi_positiony_z +
+                bent_z_positiony) + eu_z*(Phi_positionz_z + bent_z_positionz))
         # rate of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -311,17 +368,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            upd_x += Phi_rotationx_x*ep_x + Phi_rotationy_x*ep_y + Phi_rotationz_x*ep_z
-            upd_y += Phi_rotationx_y*ep_x + Phi_rotationy_y*ep_y + Phi_rotationz_y*ep_z
-            upd_z += Phi_rotationx_z*ep_x + Phi_rotationy_z*ep_y + Phi_rotationz_z*ep_z
+            upd_x += (ep_x*(Phi_rotationx_x + bent_x_rotationx) + ep_y*(Phi_rotationy_x +
+                bent_x_rotationy) + ep_z*(Phi_rotationz_x + bent_x_rotationz))
+            upd_y += (ep_x*(Phi_rotationx_y + bent_y_rotationx) + ep_y*(Phi_rotationy_y +
+                bent_y_rotationy) + ep_z*(Phi_rotationz_y + bent_y_rotationz))
+            upd_z += (ep_x*(Phi_rotationx_z + bent_z_rotationx) + ep_y*(Phi_rotationy_z +
+                bent_z_rotationy) + ep_z*(Phi_rotationz_z + bent_z_rotationz))
         # rate of the point by modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
             em = eta[k]
-            upd_x += Phi_mode_x*em
-            upd_y += Phi_mode_y*em
-            upd_z += Phi_mode_z*em
+            upd_x += em*(Phi_mode_x + bent_x_mode)
+            upd_y += em*(Phi_mode_y + bent_y_mode)
+            upd_z += em*(Phi_mode_z + bent_z_mode)
         # velocity of the point
         t35 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
         t36 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
@@ -555,9 +627,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            s[i3] = Phi_positionx_x*fp_x + Phi_positionx_y*fp_y + Phi_positionx_z*fp_z
-            s[i3 + 1] = Phi_positiony_x*fp_x + Phi_positiony_y*fp_y + Phi_positiony_z*fp_z
-            s[i3 + 2] = Phi_positionz_x*fp_x + Phi_positionz_y*fp_y + Phi_positionz_z*fp_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            s[i3] = (fp_x*(Phi_positionx_x + bent_x_positionx) + fp_y*(Phi_positionx_y +
+                bent_y_positionx) + fp_z*(Phi_positionx_z + bent_z_positionx))
+            s[i3 + 1] = (fp_x*(Phi_positiony_x + bent_x_positiony) + fp_y*(Phi_positiony_y +
+                bent_y_positiony) + fp_z*(Phi_positiony_z + bent_z_positiony))
+            s[i3 + 2] = (fp_x*(Phi_positionz_x + bent_x_positionz) + fp_y*(Phi_positionz_y +
+                bent_y_positionz) + fp_z*(Phi_positionz_z + bent_z_positionz))
         # forces conjugate to the local coordinates: rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -567,13 +651,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            s[j3] = Phi_rotationx_x*fp_x + Phi_rotationx_y*fp_y + Phi_rotationx_z*fp_z
-            s[j3 + 1] = Phi_rotationy_x*fp_x + Phi_rotationy_y*fp_y + Phi_rotationy_z*fp_z
-            s[j3 + 2] = Phi_rotationz_x*fp_x + Phi_rotationz_y*fp_y + Phi_rotationz_z*fp_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            s[j3] = (fp_x*(Phi_rotationx_x + bent_x_rotationx) + fp_y*(Phi_rotationx_y +
+                bent_y_rotationx) + fp_z*(Phi_rotationx_z + bent_z_rotationx))
+            s[j3 + 1] = (fp_x*(Phi_rotationy_x + bent_x_rotationy) + fp_y*(Phi_rotationy_y +
+                bent_y_rotationy) + fp_z*(Phi_rotationy_z + bent_z_rotationy))
+            s[j3 + 2] = (fp_x*(Phi_rotationz_x + bent_x_rotationz) + fp_y*(Phi_rotationz_y +
+                bent_y_rotationz) + fp_z*(Phi_rotationz_z + bent_z_rotationz))
         # forces conjugate to the local coordinates: modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            s[k] = Phi_mode_x*fp_x + Phi_mode_y*fp_y + Phi_mode_z*fp_z
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            s[k] = (fp_x*(Phi_mode_x + bent_x_mode) + fp_y*(Phi_mode_y + bent_y_mode) +
+                fp_z*(Phi_mode_z + bent_z_mode))
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -1094,43 +1194,116 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # differential: change of the shapes, Hx y
+                columns_times(Hx, dy, dbent_x, n, n)
+                # differential: change of the shapes, Hy y
+                columns_times(Hy, dy, dbent_y, n, n)
+                # differential: change of the shapes, Hz y
+                columns_times(Hz, dy, dbent_z, n, n)
                 # differential: displacement of the point by positions
                 dup_x = dup_y = dup_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
+                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     Phi_positionx_x, Phi_positionx_y, Phi_positionx_z = (Phi[3*i3], Phi[3*i3 + 1],
                         Phi[3*i3 + 2])
                     Phi_positiony_x, Phi_positiony_y, Phi_positiony_z = (Phi[3*(i3 + 1)],
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dup_x += Phi_positionx_x*du_x + Phi_positiony_x*du_y + Phi_positionz_x*du_z
-                    dup_y += Phi_positionx_y*du_x + Phi_positiony_y*du_y + Phi_positionz_y*du_z
-                    dup_z += Phi_positionx_z*du_x + Phi_positiony_z*du_y + Phi_positionz_z*du_z
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    t287 = (0.5)*u_x
+                    t288 = (0.5)*u_y
+                    t289 = (0.5)*u_z
+                    dup_x += (dbent_x_positionx*t287 + dbent_x_positiony*t288 +
+                        dbent_x_positionz*t289 + du_x*(Phi_positionx_x + (0.5)*bent_x_positionx) +
+                        du_y*(Phi_positiony_x + (0.5)*bent_x_positiony) + du_z*(Phi_positionz_x +
+                        (0.5)*bent_x_positionz))
+                    dup_y += (dbent_y_positionx*t287 + dbent_y_positiony*t288 +
+                        dbent_y_positionz*t289 + du_x*(Phi_positionx_y + (0.5)*bent_y_positionx) +
+                        du_y*(Phi_positiony_y + (0.5)*bent_y_positiony) + du_z*(Phi_positionz_y +
+                        (0.5)*bent_y_positionz))
+                    dup_z += (dbent_z_positionx*t287 + dbent_z_positiony*t288 +
+                        dbent_z_positionz*t289 + du_x*(Phi_positionx_z + (0.5)*bent_z_positionx) +
+                        du_y*(Phi_positiony_z + (0.5)*bent_z_positiony) + du_z*(Phi_positionz_z +
+                        (0.5)*bent_z_positionz))
                 # differential: displacement of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Phi_rotationx_x, Phi_rotationx_y, Phi_rotationx_z = (Phi[3*j3], Phi[3*j3 + 1],
                         Phi[3*j3 + 2])
                     Phi_rotationy_x, Phi_rotationy_y, Phi_rotationy_z = (Phi[3*(j3 + 1)],
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dup_x += (Phi_rotationx_x*dpsi_x + Phi_rotationy_x*dpsi_y +
-                        Phi_rotationz_x*dpsi_z)
-                    dup_y += (Phi_rotationx_y*dpsi_x + Phi_rotationy_y*dpsi_y +
-                        Phi_rotationz_y*dpsi_z)
-                    dup_z += (Phi_rotationx_z*dpsi_x + Phi_rotationy_z*dpsi_y +
-                        Phi_rotationz_z*dpsi_z)
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    t290 = (0.5)*psi_x
+                    t291 = (0.5)*psi_y
+                    t292 = (0.5)*psi_z
+                    dup_x += (dbent_x_rotationx*t290 + dbent_x_rotationy*t291 +
+                        dbent_x_rotationz*t292 + dpsi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx)
+                        + dpsi_y*(Phi_rotationy_x + (0.5)*bent_x_rotationy) +
+                        dpsi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+                    dup_y += (dbent_y_rotationx*t290 + dbent_y_rotationy*t291 +
+                        dbent_y_rotationz*t292 + dpsi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx)
+                        + dpsi_y*(Phi_rotationy_y + (0.5)*bent_y_rotationy) +
+                        dpsi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+                    dup_z += (dbent_z_rotationx*t290 + dbent_z_rotationy*t291 +
+                        dbent_z_rotationz*t292 + dpsi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx)
+                        + dpsi_y*(Phi_rotationy_z + (0.5)*bent_z_rotationy) +
+                        dpsi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
                 # differential: displacement of the point by modes
                 for k in range(MODES, n):
+                    ym = y[k]
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
                     dym = dy[k]
-                    dup_x += Phi_mode_x*dym
-                    dup_y += Phi_mode_y*dym
-                    dup_z += Phi_mode_z*dym
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    t293 = (0.5)*ym
+                    dup_x += dbent_x_mode*t293 + dym*(Phi_mode_x + (0.5)*bent_x_mode)
+                    dup_y += dbent_y_mode*t293 + dym*(Phi_mode_y + (0.5)*bent_y_mode)
+                    dup_z += dbent_z_mode*t293 + dym*(Phi_mode_z + (0.5)*bent_z_mode)
                 # differential: arm of the point in the frame
                 drp_x = dup_x
                 drp_y = dup_y
@@ -1164,57 +1337,57 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t287 = (0.5)*dpsi_y
-                    t288 = (0.5)*psi_z
-                    t289 = e0*psi_x
-                    t290 = psi_y*t289
-                    t291 = (0.5)*psi_y
-                    t292 = psi_z*t289
-                    t293 = Om0_x*psi_z - Om0_z*psi_x
-                    t294 = Om0_x*dpsi_z - Om0_z*dpsi_x
-                    t295 = -Om0_x*psi_y + Om0_y*psi_x
-                    t296 = -Om0_x*dpsi_y + Om0_y*dpsi_x
-                    t297 = psi_y*psi_y
-                    t298 = e0*t297
-                    t299 = psi_z*psi_z
-                    t300 = e0*t299 - 1
-                    t301 = 2*dpsi_x*psi_x
-                    t302 = 2*dpsi_y*psi_y
-                    t303 = 2*dpsi_z*psi_z
-                    t304 = t301 + t302 + t303
-                    t305 = e1*t304
-                    t306 = (0.5)*dpsi_z
-                    t307 = dpsi_x*e0
-                    t308 = psi_x*t305
-                    t309 = dpsi_y*t289 + psi_y*t307 + psi_y*t308
-                    t310 = dpsi_z*t289 + psi_z*t307 + psi_z*t308
-                    t311 = e0*t303 + t299*t305
-                    t312 = e0*t302 + t297*t305
-                    t313 = (0.5)*psi_x
-                    t314 = e0*psi_y
-                    t315 = psi_z*t314
-                    t316 = -Om0_y*psi_z + Om0_z*psi_y
-                    t317 = -Om0_y*dpsi_z + Om0_z*dpsi_y
-                    t318 = psi_x*psi_x
-                    t319 = e0*t318
-                    t320 = (0.5)*dpsi_x
-                    t321 = dpsi_y*e0
-                    t322 = psi_y*t305
-                    t323 = dpsi_z*t314 + psi_z*t321 + psi_z*t322
-                    t324 = e0*t301 + t305*t318
-                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t287 - Om_x*(-t311 - t312) -
-                        Om_y*(-t306 + t309) - Om_z*(t287 + t310) - dOm_x*(-t298 - t300) -
-                        dOm_y*(-t288 + t290) - dOm_z*(t291 + t292) + dpsi_y*e0*t295 -
-                        dpsi_z*e0*t293 + e0*psi_y*t296 - e0*psi_z*t294 + e1*psi_y*t295*t304 -
-                        psi_z*t293*t305))
-                    rhs_y += (-alpha_r*(-Om0_x*t306 + (0.5)*Om0_z*dpsi_x - Om_x*(t306 + t309) -
-                        Om_y*(-t311 - t324) - Om_z*(-t320 + t323) - dOm_x*(t288 + t290) -
-                        dOm_y*(-t300 - t319) - dOm_z*(-t313 + t315) + dpsi_z*e0*t316 +
-                        e0*psi_z*t317 + e1*psi_z*t304*t316 - t289*t296 - t295*t307 - t295*t308))
-                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t287 +
-                        t310) - Om_y*(t320 + t323) - Om_z*(-t312 - t324) - dOm_x*(-t291 + t292) -
-                        dOm_y*(t313 + t315) - dOm_z*(-t298 - t319 + 1) + dpsi_x*e0*t293 +
-                        e0*psi_x*t294 + e1*psi_x*t293*t304 - t314*t317 - t316*t321 - t316*t322))
+                    t294 = (0.5)*dpsi_y
+                    t295 = (0.5)*psi_z
+                    t296 = e0*psi_x
+                    t297 = psi_y*t296
+                    t298 = (0.5)*psi_y
+                    t299 = psi_z*t296
+                    t300 = Om0_x*psi_z - Om0_z*psi_x
+                    t301 = Om0_x*dpsi_z - Om0_z*dpsi_x
+                    t302 = -Om0_x*psi_y + Om0_y*psi_x
+                    t303 = -Om0_x*dpsi_y + Om0_y*dpsi_x
+                    t304 = psi_y*psi_y
+                    t305 = e0*t304
+                    t306 = psi_z*psi_z
+                    t307 = e0*t306 - 1
+                    t308 = 2*dpsi_x*psi_x
+                    t309 = 2*dpsi_y*psi_y
+                    t310 = 2*dpsi_z*psi_z
+                    t311 = t308 + t309 + t310
+                    t312 = e1*t311
+                    t313 = (0.5)*dpsi_z
+                    t314 = dpsi_x*e0
+                    t315 = psi_x*t312
+                    t316 = dpsi_y*t296 + psi_y*t314 + psi_y*t315
+                    t317 = dpsi_z*t296 + psi_z*t314 + psi_z*t315
+                    t318 = e0*t310 + t306*t312
+                    t319 = e0*t309 + t304*t312
+                    t320 = (0.5)*psi_x
+                    t321 = e0*psi_y
+                    t322 = psi_z*t321
+                    t323 = -Om0_y*psi_z + Om0_z*psi_y
+                    t324 = -Om0_y*dpsi_z + Om0_z*dpsi_y
+                    t325 = psi_x*psi_x
+                    t326 = e0*t325
+                    t327 = (0.5)*dpsi_x
+                    t328 = dpsi_y*e0
+                    t329 = psi_y*t312
+                    t330 = dpsi_z*t321 + psi_z*t328 + psi_z*t329
+                    t331 = e0*t308 + t312*t325
+                    rhs_x += (-alpha_r*((0.5)*Om0_y*dpsi_z - Om0_z*t294 - Om_x*(-t318 - t319) -
+                        Om_y*(-t313 + t316) - Om_z*(t294 + t317) - dOm_x*(-t305 - t307) -
+                        dOm_y*(-t295 + t297) - dOm_z*(t298 + t299) + dpsi_y*e0*t302 -
+                        dpsi_z*e0*t300 + e0*psi_y*t303 - e0*psi_z*t301 + e1*psi_y*t302*t311 -
+                        psi_z*t300*t312))
+                    rhs_y += (-alpha_r*(-Om0_x*t313 + (0.5)*Om0_z*dpsi_x - Om_x*(t313 + t316) -
+                        Om_y*(-t318 - t331) - Om_z*(-t327 + t330) - dOm_x*(t295 + t297) -
+                        dOm_y*(-t307 - t326) - dOm_z*(-t320 + t322) + dpsi_z*e0*t323 +
+                        e0*psi_z*t324 + e1*psi_z*t311*t323 - t296*t303 - t302*t314 - t302*t315))
+                    rhs_z += (-alpha_r*((0.5)*Om0_x*dpsi_y - 0.5*Om0_y*dpsi_x - Om_x*(-t294 +
+                        t317) - Om_y*(t327 + t330) - Om_z*(-t319 - t331) - dOm_x*(-t298 + t299) -
+                        dOm_y*(t320 + t322) - dOm_z*(-t305 - t326 + 1) + dpsi_x*e0*t300 +
+                        e0*psi_x*t301 + e1*psi_x*t300*t311 - t321*t324 - t323*t328 - t323*t329))
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1234,13 +1407,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t325 = X_y + u_y
-                    t326 = X_z + u_z
-                    t327 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t326 + dOm0_z*t325 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t326 - dOm0_z*t327 - dv0_y +
+                    t332 = X_y + u_y
+                    t333 = X_z + u_z
+                    t334 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t333 + dOm0_z*t332 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t333 - dOm0_z*t334 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t325 + dOm0_y*t327 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t332 + dOm0_y*t334 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1251,36 +1424,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t328 = (0.5)*Om0_z + (0.5)*Om_z
-                    t329 = Om0_y + Om_y
-                    t330 = (0.5)*dpsi_z
-                    t331 = (0.5)*dOm0_z + (0.5)*dOm_z
-                    t332 = dOm0_y + dOm_y
-                    t333 = (0.5)*psi_z
-                    t334 = -Om0_y + Om_y
-                    t335 = -Om0_x + Om_x
-                    t336 = psi_x*t334 - psi_y*t335
-                    t337 = -Om0_z + Om_z
-                    t338 = -psi_x*t337 + psi_z*t335
-                    t339 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t340 = -dOm0_y + dOm_y
-                    t341 = -dOm0_x + dOm_x
-                    t342 = dpsi_x*t334 - dpsi_y*t335 + psi_x*t340 - psi_y*t341
-                    t343 = -dOm0_z + dOm_z
-                    t344 = -dpsi_x*t337 + dpsi_z*t335 - psi_x*t343 + psi_z*t341
-                    t345 = Om0_x + Om_x
-                    t346 = dOm0_x + dOm_x
-                    t347 = psi_y*t337 - psi_z*t334
-                    t348 = dpsi_y*t337 - dpsi_z*t334 + psi_y*t343 - psi_z*t340
-                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t328 + e0*(dpsi_y*t336 - dpsi_z*t338 +
-                        psi_y*t342 - psi_z*t344) + psi_y*t331 - t329*t330 - t332*t333 +
-                        t339*(psi_y*t336 - psi_z*t338))
-                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t328 + e0*(-dpsi_x*t336 + dpsi_z*t347
-                        - psi_x*t342 + psi_z*t348) - psi_x*t331 + t330*t345 + t333*t346 +
-                        t339*(-psi_x*t336 + psi_z*t347))
-                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t329 - 0.5*dpsi_y*t345 +
-                        e0*(dpsi_x*t338 - dpsi_y*t347 + psi_x*t344 - psi_y*t348) +
-                        (0.5)*psi_x*t332 - 0.5*psi_y*t346 + t339*(psi_x*t338 - psi_y*t347))
+                    t335 = (0.5)*Om0_z + (0.5)*Om_z
+                    t336 = Om0_y + Om_y
+                    t337 = (0.5)*dpsi_z
+                    t338 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t339 = dOm0_y + dOm_y
+                    t340 = (0.5)*psi_z
+                    t341 = -Om0_y + Om_y
+                    t342 = -Om0_x + Om_x
+                    t343 = psi_x*t341 - psi_y*t342
+                    t344 = -Om0_z + Om_z
+                    t345 = -psi_x*t344 + psi_z*t342
+                    t346 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t347 = -dOm0_y + dOm_y
+                    t348 = -dOm0_x + dOm_x
+                    t349 = dpsi_x*t341 - dpsi_y*t342 + psi_x*t347 - psi_y*t348
+                    t350 = -dOm0_z + dOm_z
+                    t351 = -dpsi_x*t344 + dpsi_z*t342 - psi_x*t350 + psi_z*t348
+                    t352 = Om0_x + Om_x
+                    t353 = dOm0_x + dOm_x
+                    t354 = psi_y*t344 - psi_z*t341
+                    t355 = dpsi_y*t344 - dpsi_z*t341 + psi_y*t350 - psi_z*t347
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t335 + e0*(dpsi_y*t343 - dpsi_z*t345 +
+                        psi_y*t349 - psi_z*t351) + psi_y*t338 - t336*t337 - t339*t340 +
+                        t346*(psi_y*t343 - psi_z*t345))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t335 + e0*(-dpsi_x*t343 + dpsi_z*t354
+                        - psi_x*t349 + psi_z*t355) - psi_x*t338 + t337*t352 + t340*t353 +
+                        t346*(-psi_x*t343 + psi_z*t354))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t336 - 0.5*dpsi_y*t352 +
+                        e0*(dpsi_x*t345 - dpsi_y*t354 + psi_x*t351 - psi_y*t355) +
+                        (0.5)*psi_x*t339 - 0.5*psi_y*t353 + t346*(psi_x*t345 - psi_y*t354))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1295,10 +1468,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    dupd_x += Phi_positionx_x*deu_x + Phi_positiony_x*deu_y + Phi_positionz_x*deu_z
-                    dupd_y += Phi_positionx_y*deu_x + Phi_positiony_y*deu_y + Phi_positionz_y*deu_z
-                    dupd_z += Phi_positionx_z*deu_x + Phi_positiony_z*deu_y + Phi_positionz_z*deu_z
+                    dupd_x += (dbent_x_positionx*eu_x + dbent_x_positiony*eu_y +
+                        dbent_x_positionz*eu_z + deu_x*(Phi_positionx_x + bent_x_positionx) +
+                        deu_y*(Phi_positiony_x + bent_x_positiony) + deu_z*(Phi_positionz_x +
+                        bent_x_positionz))
+                    dupd_y += (dbent_y_positionx*eu_x + dbent_y_positiony*eu_y +
+                        dbent_y_positionz*eu_z + deu_x*(Phi_positionx_y + bent_y_positionx) +
+                        deu_y*(Phi_positiony_y + bent_y_positiony) + deu_z*(Phi_positionz_y +
+                        bent_y_positionz))
+                    dupd_z += (dbent_z_positionx*eu_x + dbent_z_positiony*eu_y +
+                        dbent_z_positionz*eu_z + deu_x*(Phi_positionx_z + bent_z_positionx) +
+                        deu_y*(Phi_positiony_z + bent_z_positiony) + deu_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: rate of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1308,30 +1509,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
                     dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    dupd_x += Phi_rotationx_x*dep_x + Phi_rotationy_x*dep_y + Phi_rotationz_x*dep_z
-                    dupd_y += Phi_rotationx_y*dep_x + Phi_rotationy_y*dep_y + Phi_rotationz_y*dep_z
-                    dupd_z += Phi_rotationx_z*dep_x + Phi_rotationy_z*dep_y + Phi_rotationz_z*dep_z
+                    dupd_x += (dbent_x_rotationx*ep_x + dbent_x_rotationy*ep_y +
+                        dbent_x_rotationz*ep_z + dep_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dep_y*(Phi_rotationy_x + bent_x_rotationy) + dep_z*(Phi_rotationz_x +
+                        bent_x_rotationz))
+                    dupd_y += (dbent_y_rotationx*ep_x + dbent_y_rotationy*ep_y +
+                        dbent_y_rotationz*ep_z + dep_x*(Phi_rotationx_y + bent_y_rotationx) +
+                        dep_y*(Phi_rotationy_y + bent_y_rotationy) + dep_z*(Phi_rotationz_y +
+                        bent_y_rotationz))
+                    dupd_z += (dbent_z_rotationx*ep_x + dbent_z_rotationy*ep_y +
+                        dbent_z_rotationz*ep_z + dep_x*(Phi_rotationx_z + bent_z_rotationx) +
+                        dep_y*(Phi_rotationy_z + bent_z_rotationy) + dep_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: rate of the point by modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    em = eta[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
                     dem = deta[k]
-                    dupd_x += Phi_mode_x*dem
-                    dupd_y += Phi_mode_y*dem
-                    dupd_z += Phi_mode_z*dem
+                    dupd_x += dbent_x_mode*em + dem*(Phi_mode_x + bent_x_mode)
+                    dupd_y += dbent_y_mode*em + dem*(Phi_mode_y + bent_y_mode)
+                    dupd_z += dbent_z_mode*em + dem*(Phi_mode_z + bent_z_mode)
                 # differential: velocity of the point
-                t349 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t350 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t351 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t352 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t353 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t354 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t349 + R0_xy*t350 + R0_xz*t351 + t352*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t353*(-R0_xx*dth0_z + R0_xz*dth0_x) + t354*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t349 + R0_yy*t350 + R0_yz*t351 + t352*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t353*(-R0_yx*dth0_z + R0_yz*dth0_x) + t354*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t349 + R0_zy*t350 + R0_zz*t351 + t352*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t353*(-R0_zx*dth0_z + R0_zz*dth0_x) + t354*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t356 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t357 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t358 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t359 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t360 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t361 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t356 + R0_xy*t357 + R0_xz*t358 + t359*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t360*(-R0_xx*dth0_z + R0_xz*dth0_x) + t361*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t356 + R0_yy*t357 + R0_yz*t358 + t359*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t360*(-R0_yx*dth0_z + R0_yz*dth0_x) + t361*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t356 + R0_zy*t357 + R0_zz*t358 + t359*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t360*(-R0_zx*dth0_z + R0_zz*dth0_x) + t361*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1344,139 +1580,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t355 = dxa_x - dxb_x
-                t356 = dxa_y - dxb_y
-                t357 = dxa_z - dxb_z
-                t358 = xa_x - xb_x
-                t359 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t360 = xa_y - xb_y
-                t361 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t362 = xa_z - xb_z
-                t363 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t364 = Rb_xx*t355 + Rb_yx*t356 + Rb_zx*t357 + t358*t359 + t360*t361 + t362*t363
-                t365 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t366 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t367 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t368 = Rb_xy*t355 + Rb_yy*t356 + Rb_zy*t357 + t358*t365 + t360*t366 + t362*t367
-                t369 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t370 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t371 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t372 = Rb_xz*t355 + Rb_yz*t356 + Rb_zz*t357 + t358*t369 + t360*t370 + t362*t371
-                t373 = va_x - vb_x
-                t374 = va_y - vb_y
-                t375 = va_z - vb_z
-                t376 = dva_x - uxb_x
-                t377 = dva_y - uxb_y
-                t378 = dva_z - uxb_z
-                t379 = Rb_xy*t358 + Rb_yy*t360 + Rb_zy*t362
-                t380 = Rb_xz*t358 + Rb_yz*t360 + Rb_zz*t362
-                t381 = Rb_xx*t358 + Rb_yx*t360 + Rb_zx*t362
-                dplace_1 = t364
-                dplace_2 = t368
-                dplace_3 = t372
-                drate_1 = -Omb_y*t372 + Omb_z*t368 + t359*t373 + t361*t374 + t363*t375
-                urate_1 = Rb_xx*t376 + Rb_yx*t377 + Rb_zx*t378 + t379*uthb_z - t380*uthb_y
-                drate_2 = Omb_x*t372 - Omb_z*t364 + t365*t373 + t366*t374 + t367*t375
-                urate_2 = Rb_xy*t376 + Rb_yy*t377 + Rb_zy*t378 + t380*uthb_x - t381*uthb_z
-                drate_3 = -Omb_x*t368 + Omb_y*t364 + t369*t373 + t370*t374 + t371*t375
-                urate_3 = Rb_xz*t376 + Rb_yz*t377 + Rb_zz*t378 - t379*uthb_x + t381*uthb_y
-                t382 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t383 = normal_1*normal_3
-                t384 = normal_2*normal_3
-                t385 = 1 - normal_3*normal_3
-                t386 = -friction_1*t383 - friction_2*t384 + friction_3*t385 - normal_3*push
-                t387 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t388 = normal_1*normal_2
-                t389 = friction_3*normal_3
-                t390 = 1 - normal_2*normal_2
-                t391 = -friction_1*t388 + friction_2*t390 - normal_2*push - normal_2*t389
-                t392 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t393 = 1 - normal_1*normal_1
-                t394 = friction_1*t393 - friction_2*t388 - friction_3*t383 - normal_1*push
-                t395 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t396 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t362 = dxa_x - dxb_x
+                t363 = dxa_y - dxb_y
+                t364 = dxa_z - dxb_z
+                t365 = xa_x - xb_x
+                t366 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t367 = xa_y - xb_y
+                t368 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t369 = xa_z - xb_z
+                t370 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t371 = Rb_xx*t362 + Rb_yx*t363 + Rb_zx*t364 + t365*t366 + t367*t368 + t369*t370
+                t372 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t373 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t374 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t375 = Rb_xy*t362 + Rb_yy*t363 + Rb_zy*t364 + t365*t372 + t367*t373 + t369*t374
+                t376 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t377 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t378 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t379 = Rb_xz*t362 + Rb_yz*t363 + Rb_zz*t364 + t365*t376 + t367*t377 + t369*t378
+                t380 = va_x - vb_x
+                t381 = va_y - vb_y
+                t382 = va_z - vb_z
+                t383 = dva_x - uxb_x
+                t384 = dva_y - uxb_y
+                t385 = dva_z - uxb_z
+                t386 = Rb_xy*t365 + Rb_yy*t367 + Rb_zy*t369
+                t387 = Rb_xz*t365 + Rb_yz*t367 + Rb_zz*t369
+                t388 = Rb_xx*t365 + Rb_yx*t367 + Rb_zx*t369
+                dplace_1 = t371
+                dplace_2 = t375
+                dplace_3 = t379
+                drate_1 = -Omb_y*t379 + Omb_z*t375 + t366*t380 + t368*t381 + t370*t382
+                urate_1 = Rb_xx*t383 + Rb_yx*t384 + Rb_zx*t385 + t386*uthb_z - t387*uthb_y
+                drate_2 = Omb_x*t379 - Omb_z*t371 + t372*t380 + t373*t381 + t374*t382
+                urate_2 = Rb_xy*t383 + Rb_yy*t384 + Rb_zy*t385 + t387*uthb_x - t388*uthb_z
+                drate_3 = -Omb_x*t375 + Omb_y*t371 + t376*t380 + t377*t381 + t378*t382
+                urate_3 = Rb_xz*t383 + Rb_yz*t384 + Rb_zz*t385 - t386*uthb_x + t388*uthb_y
+                t389 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t390 = normal_1*normal_3
+                t391 = normal_2*normal_3
+                t392 = 1 - normal_3*normal_3
+                t393 = -friction_1*t390 - friction_2*t391 + friction_3*t392 - normal_3*push
+                t394 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t395 = normal_1*normal_2
+                t396 = friction_3*normal_3
+                t397 = 1 - normal_2*normal_2
+                t398 = -friction_1*t395 + friction_2*t397 - normal_2*push - normal_2*t396
+                t399 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t400 = 1 - normal_1*normal_1
+                t401 = friction_1*t400 - friction_2*t395 - friction_3*t390 - normal_1*push
+                t402 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t403 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t397 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t404 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t398 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t405 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t399 = -normal_1*t395 - t383*t397 - t388*t396 + t393*t398
-                t400 = -normal_2*t395 - t384*t397 - t388*t398 + t390*t396
-                t401 = -normal_3*t395 - t383*t398 - t384*t396 + t385*t397
-                t402 = dnormal_1_by_place_1*dplace_1
-                t403 = dnormal_1_by_place_2*dplace_2
-                t404 = dnormal_1_by_place_3*dplace_3
-                t405 = t402 + t403 + t404
-                t406 = dnormal_2_by_place_1*dplace_1
-                t407 = dnormal_2_by_place_2*dplace_2
-                t408 = dnormal_2_by_place_3*dplace_3
-                t409 = t406 + t407 + t408
-                t410 = friction_2*t409
-                t411 = normal_2*t405
-                t412 = dnormal_3_by_place_1*dplace_1
-                t413 = dnormal_3_by_place_2*dplace_2
-                t414 = dnormal_3_by_place_3*dplace_3
-                t415 = t412 + t413 + t414
-                t416 = friction_3*t415
-                t417 = friction_1*normal_1
-                t418 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t406 = -normal_1*t402 - t390*t404 - t395*t403 + t400*t405
+                t407 = -normal_2*t402 - t391*t404 - t395*t405 + t397*t403
+                t408 = -normal_3*t402 - t390*t405 - t391*t403 + t392*t404
+                t409 = dnormal_1_by_place_1*dplace_1
+                t410 = dnormal_1_by_place_2*dplace_2
+                t411 = dnormal_1_by_place_3*dplace_3
+                t412 = t409 + t410 + t411
+                t413 = dnormal_2_by_place_1*dplace_1
+                t414 = dnormal_2_by_place_2*dplace_2
+                t415 = dnormal_2_by_place_3*dplace_3
+                t416 = t413 + t414 + t415
+                t417 = friction_2*t416
+                t418 = normal_2*t412
+                t419 = dnormal_3_by_place_1*dplace_1
+                t420 = dnormal_3_by_place_2*dplace_2
+                t421 = dnormal_3_by_place_3*dplace_3
+                t422 = t419 + t420 + t421
+                t423 = friction_3*t422
+                t424 = friction_1*normal_1
+                t425 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t419 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t426 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t420 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t427 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t421 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t428 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t422 = (-friction_2*t411 - normal_1*t410 - normal_1*t416 - normal_1*t418 -
-                    push*t405 - t383*t420 - t388*t419 - t389*t405 + t393*t421 - t417*(2*t402 +
-                    2*t403 + 2*t404))
-                t423 = friction_2*normal_2
-                t424 = (-friction_1*t411 - normal_2*t416 - normal_2*t418 - push*t409 - t384*t420 -
-                    t388*t421 - t389*t409 + t390*t419 - t409*t417 - t423*(2*t406 + 2*t407 +
-                    2*t408))
-                t425 = (-friction_1*normal_3*t405 - normal_3*t410 - normal_3*t418 - push*t415 -
-                    t383*t421 - t384*t419 + t385*t420 - t389*(2*t412 + 2*t413 + 2*t414) -
-                    t415*t417 - t415*t423)
-                t426 = (Rb_xx*t399 + Rb_xx*t422 + Rb_xy*t400 + Rb_xy*t424 + Rb_xz*t401 +
-                    Rb_xz*t425 + t382*t386 + t387*t391 + t392*t394)
-                t427 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t428 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t429 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t430 = (Rb_yx*t399 + Rb_yx*t422 + Rb_yy*t400 + Rb_yy*t424 + Rb_yz*t401 +
-                    Rb_yz*t425 + t386*t427 + t391*t428 + t394*t429)
-                t431 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t432 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t433 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t434 = (Rb_zx*t399 + Rb_zx*t422 + Rb_zy*t400 + Rb_zy*t424 + Rb_zz*t401 +
-                    Rb_zz*t425 + t386*t431 + t391*t432 + t394*t433)
-                t435 = xa_x - xb_x
-                t436 = xa_y - xb_y
-                t437 = xa_z - xb_z
-                t438 = Rb_xz*t435 + Rb_yz*t436 + Rb_zz*t437
-                t439 = Rb_xy*t435 + Rb_yy*t436 + Rb_zy*t437
-                t440 = -t439
-                t441 = dxa_x - dxb_x
-                t442 = dxa_y - dxb_y
-                t443 = dxa_z - dxb_z
-                t444 = Rb_xz*t441 + Rb_yz*t442 + Rb_zz*t443 + t382*t435 + t427*t436 + t431*t437
-                t445 = Rb_xy*t441 + Rb_yy*t442 + Rb_zy*t443 + t387*t435 + t428*t436 + t432*t437
-                t446 = Rb_xx*t435 + Rb_yx*t436 + Rb_zx*t437
-                t447 = -t438
-                t448 = Rb_xx*t441 + Rb_yx*t442 + Rb_zx*t443 + t392*t435 + t429*t436 + t433*t437
-                t449 = -t446
-                dFp_x = t426
-                dFp_y = t430
-                dFp_z = t434
-                dg[n] = -t426
-                dg[n + 1] = -t430
-                dg[n + 2] = -t434
-                dg[n + 3] = -t386*t445 + t391*t444 + t400*t438 + t401*t440 + t424*t438 + t425*t440
-                dg[n + 4] = t386*t448 - t394*t444 + t399*t447 + t401*t446 + t422*t447 + t425*t446
-                dg[n + 5] = -t391*t448 + t394*t445 + t399*t439 + t400*t449 + t422*t439 + t424*t449
+                t429 = (-friction_2*t418 - normal_1*t417 - normal_1*t423 - normal_1*t425 -
+                    push*t412 - t390*t427 - t395*t426 - t396*t412 + t400*t428 - t424*(2*t409 +
+                    2*t410 + 2*t411))
+                t430 = friction_2*normal_2
+                t431 = (-friction_1*t418 - normal_2*t423 - normal_2*t425 - push*t416 - t391*t427 -
+                    t395*t428 - t396*t416 + t397*t426 - t416*t424 - t430*(2*t413 + 2*t414 +
+                    2*t415))
+                t432 = (-friction_1*normal_3*t412 - normal_3*t417 - normal_3*t425 - push*t422 -
+                    t390*t428 - t391*t426 + t392*t427 - t396*(2*t419 + 2*t420 + 2*t421) -
+                    t422*t424 - t422*t430)
+                t433 = (Rb_xx*t406 + Rb_xx*t429 + Rb_xy*t407 + Rb_xy*t431 + Rb_xz*t408 +
+                    Rb_xz*t432 + t389*t393 + t394*t398 + t399*t401)
+                t434 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t435 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t436 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t437 = (Rb_yx*t406 + Rb_yx*t429 + Rb_yy*t407 + Rb_yy*t431 + Rb_yz*t408 +
+                    Rb_yz*t432 + t393*t434 + t398*t435 + t401*t436)
+                t438 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t439 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t440 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t441 = (Rb_zx*t406 + Rb_zx*t429 + Rb_zy*t407 + Rb_zy*t431 + Rb_zz*t408 +
+                    Rb_zz*t432 + t393*t438 + t398*t439 + t401*t440)
+                t442 = xa_x - xb_x
+                t443 = xa_y - xb_y
+                t444 = xa_z - xb_z
+                t445 = Rb_xz*t442 + Rb_yz*t443 + Rb_zz*t444
+                t446 = Rb_xy*t442 + Rb_yy*t443 + Rb_zy*t444
+                t447 = -t446
+                t448 = dxa_x - dxb_x
+                t449 = dxa_y - dxb_y
+                t450 = dxa_z - dxb_z
+                t451 = Rb_xz*t448 + Rb_yz*t449 + Rb_zz*t450 + t389*t442 + t434*t443 + t438*t444
+                t452 = Rb_xy*t448 + Rb_yy*t449 + Rb_zy*t450 + t394*t442 + t435*t443 + t439*t444
+                t453 = Rb_xx*t442 + Rb_yx*t443 + Rb_zx*t444
+                t454 = -t445
+                t455 = Rb_xx*t448 + Rb_yx*t449 + Rb_zx*t450 + t399*t442 + t436*t443 + t440*t444
+                t456 = -t453
+                dFp_x = t433
+                dFp_y = t437
+                dFp_z = t441
+                dg[n] = -t433
+                dg[n + 1] = -t437
+                dg[n + 2] = -t441
+                dg[n + 3] = -t393*t452 + t398*t451 + t407*t445 + t408*t447 + t431*t445 + t432*t447
+                dg[n + 4] = t393*t455 - t401*t451 + t406*t454 + t408*t453 + t429*t454 + t432*t453
+                dg[n + 5] = -t398*t455 + t401*t452 + t406*t446 + t407*t456 + t429*t446 + t431*t456
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1494,11 +1730,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-                    ds[i3] = Phi_positionx_x*dfp_x + Phi_positionx_y*dfp_y + Phi_positionx_z*dfp_z
-                    ds[i3 + 1] = (Phi_positiony_x*dfp_x + Phi_positiony_y*dfp_y +
-                        Phi_positiony_z*dfp_z)
-                    ds[i3 + 2] = (Phi_positionz_x*dfp_x + Phi_positionz_y*dfp_y +
-                        Phi_positionz_z*dfp_z)
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    ds[i3] = (dbent_x_positionx*fp_x + dbent_y_positionx*fp_y +
+                        dbent_z_positionx*fp_z + dfp_x*(Phi_positionx_x + bent_x_positionx) +
+                        dfp_y*(Phi_positionx_y + bent_y_positionx) + dfp_z*(Phi_positionx_z +
+                        bent_z_positionx))
+                    ds[i3 + 1] = (dbent_x_positiony*fp_x + dbent_y_positiony*fp_y +
+                        dbent_z_positiony*fp_z + dfp_x*(Phi_positiony_x + bent_x_positiony) +
+                        dfp_y*(Phi_positiony_y + bent_y_positiony) + dfp_z*(Phi_positiony_z +
+                        bent_z_positiony))
+                    ds[i3 + 2] = (dbent_x_positionz*fp_x + dbent_y_positionz*fp_y +
+                        dbent_z_positionz*fp_z + dfp_x*(Phi_positionz_x + bent_x_positionz) +
+                        dfp_y*(Phi_positionz_y + bent_y_positionz) + dfp_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: forces conjugate to the local coordinates: rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1508,15 +1769,48 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-                    ds[j3] = Phi_rotationx_x*dfp_x + Phi_rotationx_y*dfp_y + Phi_rotationx_z*dfp_z
-                    ds[j3 + 1] = (Phi_rotationy_x*dfp_x + Phi_rotationy_y*dfp_y +
-                        Phi_rotationy_z*dfp_z)
-                    ds[j3 + 2] = (Phi_rotationz_x*dfp_x + Phi_rotationz_y*dfp_y +
-                        Phi_rotationz_z*dfp_z)
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    ds[j3] = (dbent_x_rotationx*fp_x + dbent_y_rotationx*fp_y +
+                        dbent_z_rotationx*fp_z + dfp_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dfp_y*(Phi_rotationx_y + bent_y_rotationx) + dfp_z*(Phi_rotationx_z +
+                        bent_z_rotationx))
+                    ds[j3 + 1] = (dbent_x_rotationy*fp_x + dbent_y_rotationy*fp_y +
+                        dbent_z_rotationy*fp_z + dfp_x*(Phi_rotationy_x + bent_x_rotationy) +
+                        dfp_y*(Phi_rotationy_y + bent_y_rotationy) + dfp_z*(Phi_rotationy_z +
+                        bent_z_rotationy))
+                    ds[j3 + 2] = (dbent_x_rotationz*fp_x + dbent_y_rotationz*fp_y +
+                        dbent_z_rotationz*fp_z + dfp_x*(Phi_rotationz_x + bent_x_rotationz) +
+                        dfp_y*(Phi_rotationz_y + bent_y_rotationz) + dfp_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: forces conjugate to the local coordinates: modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-                    ds[k] = Phi_mode_x*dfp_x + Phi_mode_y*dfp_y + Phi_mode_z*dfp_z
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    ds[k] = (dbent_x_mode*fp_x + dbent_y_mode*fp_y + dbent_z_mode*fp_z +
+                        dfp_x*(Phi_mode_x + bent_x_mode) + dfp_y*(Phi_mode_y + bent_y_mode) +
+                        dfp_z*(Phi_mode_z + bent_z_mode))
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1528,15 +1822,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t450 = X_z + u_z
-                    t451 = X_y + u_y
-                    t452 = X_x + u_x
+                    t457 = X_z + u_z
+                    t458 = X_y + u_y
+                    t459 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t450 - df_z*t451 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t450 + df_z*t452 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t451 - df_y*t452 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t457 - df_z*t458 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t457 + df_z*t459 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t458 - df_y*t459 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1550,25 +1844,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t453 = -m_x*psi_y + m_y*psi_x
-                    t454 = m_x*psi_z - m_z*psi_x
-                    t455 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t456 = dm_x*psi_z
-                    t457 = dpsi_z*m_x
-                    t458 = -dm_z*psi_x - dpsi_x*m_z + t456 + t457
-                    t459 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t460 = e1*t459
-                    t461 = -m_y*psi_z + m_z*psi_y
-                    t462 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t453 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t454 + (0.5)*dpsi_z*m_y - e0*psi_y*t455 +
-                        e0*psi_z*t458 + e1*psi_z*t454*t459 - psi_y*t453*t460)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t453 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t461 + e0*psi_x*t455 - e0*psi_z*t462 + e1*psi_x*t453*t459 -
-                        psi_z*t460*t461 - 0.5*t456 - 0.5*t457)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t454 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t461 + (0.5)*dpsi_y*m_x - e0*psi_x*t458 +
-                        e0*psi_y*t462 + e1*psi_y*t459*t461 - psi_x*t454*t460)
+                    t460 = -m_x*psi_y + m_y*psi_x
+                    t461 = m_x*psi_z - m_z*psi_x
+                    t462 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t463 = dm_x*psi_z
+                    t464 = dpsi_z*m_x
+                    t465 = -dm_z*psi_x - dpsi_x*m_z + t463 + t464
+                    t466 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t467 = e1*t466
+                    t468 = -m_y*psi_z + m_z*psi_y
+                    t469 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t460 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t461 + (0.5)*dpsi_z*m_y - e0*psi_y*t462 +
+                        e0*psi_z*t465 + e1*psi_z*t461*t466 - psi_y*t460*t467)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t460 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t468 + e0*psi_x*t462 - e0*psi_z*t469 + e1*psi_x*t460*t466 -
+                        psi_z*t467*t468 - 0.5*t463 - 0.5*t464)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t461 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t468 + (0.5)*dpsi_y*m_x - e0*psi_x*t465 +
+                        e0*psi_y*t469 + e1*psi_y*t466*t468 - psi_x*t461*t467)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for j in range(N_ROTATIONS):
@@ -1578,33 +1872,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t463 = dpsi_y*wp_z
-                    t464 = dpsi_z*wp_y
-                    t465 = psi_x*wp_y - psi_y*wp_x
-                    t466 = e0*t465
-                    t467 = dpsi_x*wp_y
-                    t468 = dpsi_y*wp_x
-                    t469 = e0*(t467 - t468)
-                    t470 = -psi_x*wp_z + psi_z*wp_x
-                    t471 = dpsi_x*wp_z
-                    t472 = dpsi_z*wp_x - t471
-                    t473 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t474 = e1*t473
-                    t475 = t465*t474
-                    t476 = psi_y*wp_z - psi_z*wp_y
-                    t477 = t463 - t464
-                    rhs_x += (-alpha_r*(dpsi_y*t466 - dpsi_z*e0*t470 - e0*psi_z*t472 + psi_y*t469
-                        + psi_y*t475 - psi_z*t470*t474 + (0.5)*t463 - 0.5*t464))
-                    rhs_y += (-alpha_r*(-dpsi_x*t466 + dpsi_z*e0*t476 + (0.5)*dpsi_z*wp_x +
-                        e0*psi_z*t477 + e1*psi_z*t473*t476 - psi_x*t469 - psi_x*t475 - 0.5*t471))
-                    rhs_z += (-alpha_r*(dpsi_x*e0*t470 - dpsi_y*e0*t476 + e0*psi_x*t472 -
-                        e0*psi_y*t477 + psi_x*t470*t474 - psi_y*t474*t476 + (0.5)*t467 - 0.5*t468))
-                t478 = dW_x + rhs_x
-                t479 = dW_y + rhs_y
-                t480 = dW_z + rhs_z
-                dwp_x = Bxx*t478 + Byx*t479 + Bzx*t480
-                dwp_y = Bxy*t478 + Byy*t479 + Bzy*t480
-                dwp_z = Bxz*t478 + Byz*t479 + Bzz*t480
+                    t470 = dpsi_y*wp_z
+                    t471 = dpsi_z*wp_y
+                    t472 = psi_x*wp_y - psi_y*wp_x
+                    t473 = e0*t472
+                    t474 = dpsi_x*wp_y
+                    t475 = dpsi_y*wp_x
+                    t476 = e0*(t474 - t475)
+                    t477 = -psi_x*wp_z + psi_z*wp_x
+                    t478 = dpsi_x*wp_z
+                    t479 = dpsi_z*wp_x - t478
+                    t480 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t481 = e1*t480
+                    t482 = t472*t481
+                    t483 = psi_y*wp_z - psi_z*wp_y
+                    t484 = t470 - t471
+                    rhs_x += (-alpha_r*(dpsi_y*t473 - dpsi_z*e0*t477 - e0*psi_z*t479 + psi_y*t476
+                        + psi_y*t482 - psi_z*t477*t481 + (0.5)*t470 - 0.5*t471))
+                    rhs_y += (-alpha_r*(-dpsi_x*t473 + dpsi_z*e0*t483 + (0.5)*dpsi_z*wp_x +
+                        e0*psi_z*t484 + e1*psi_z*t480*t483 - psi_x*t476 - psi_x*t482 - 0.5*t478))
+                    rhs_z += (-alpha_r*(dpsi_x*e0*t477 - dpsi_y*e0*t483 + e0*psi_x*t479 -
+                        e0*psi_y*t484 + psi_x*t477*t481 - psi_y*t481*t483 + (0.5)*t474 - 0.5*t475))
+                t485 = dW_x + rhs_x
+                t486 = dW_y + rhs_y
+                t487 = dW_z + rhs_z
+                dwp_x = Bxx*t485 + Byx*t486 + Bzx*t487
+                dwp_y = Bxy*t485 + Byy*t486 + Bzy*t487
+                dwp_z = Bxz*t485 + Byz*t486 + Bzz*t487
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1637,42 +1931,42 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t481 = alpha_r*wp_y + m_y
-                    t482 = dpsi_z*t481
-                    t483 = alpha_r*dwp_y + dm_y
-                    t484 = psi_z*t483
-                    t485 = alpha_r*wp_z + m_z
-                    t486 = dpsi_y*t485
-                    t487 = alpha_r*dwp_z + dm_z
-                    t488 = psi_y*t487
-                    t489 = alpha_r*wp_x + m_x
-                    t490 = psi_x*t481 - psi_y*t489
-                    t491 = e0*t490
-                    t492 = dpsi_x*t481
-                    t493 = psi_x*t483
-                    t494 = dpsi_y*t489
-                    t495 = alpha_r*dwp_x + dm_x
-                    t496 = psi_y*t495
-                    t497 = e0*(t492 + t493 - t494 - t496)
-                    t498 = -psi_x*t485 + psi_z*t489
-                    t499 = dpsi_z*e0
-                    t500 = dpsi_x*t485
-                    t501 = psi_x*t487
-                    t502 = dpsi_z*t489 + psi_z*t495 - t500 - t501
-                    t503 = e0*psi_z
-                    t504 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t505 = t490*t504
-                    t506 = psi_z*t504
-                    t507 = psi_y*t485 - psi_z*t481
-                    t508 = -t482 - t484 + t486 + t488
-                    dg[j3] = (dpsi_y*t491 + psi_y*t497 + psi_y*t505 + (0.5)*t482 + (0.5)*t484 -
-                        0.5*t486 - 0.5*t488 + t495 - t498*t499 - t498*t506 - t502*t503)
-                    dg[j3 + 1] = (-dpsi_x*t491 - 0.5*dpsi_z*t489 - psi_x*t497 - psi_x*t505 -
-                        0.5*psi_z*t495 + t483 + t499*t507 + (0.5)*t500 + (0.5)*t501 + t503*t508 +
-                        t506*t507)
-                    dg[j3 + 2] = (dpsi_x*e0*t498 - dpsi_y*e0*t507 + e0*psi_x*t502 - e0*psi_y*t508
-                        + psi_x*t498*t504 - psi_y*t504*t507 + t487 - 0.5*t492 - 0.5*t493 +
-                        (0.5)*t494 + (0.5)*t496)
+                    t488 = alpha_r*wp_y + m_y
+                    t489 = dpsi_z*t488
+                    t490 = alpha_r*dwp_y + dm_y
+                    t491 = psi_z*t490
+                    t492 = alpha_r*wp_z + m_z
+                    t493 = dpsi_y*t492
+                    t494 = alpha_r*dwp_z + dm_z
+                    t495 = psi_y*t494
+                    t496 = alpha_r*wp_x + m_x
+                    t497 = psi_x*t488 - psi_y*t496
+                    t498 = e0*t497
+                    t499 = dpsi_x*t488
+                    t500 = psi_x*t490
+                    t501 = dpsi_y*t496
+                    t502 = alpha_r*dwp_x + dm_x
+                    t503 = psi_y*t502
+                    t504 = e0*(t499 + t500 - t501 - t503)
+                    t505 = -psi_x*t492 + psi_z*t496
+                    t506 = dpsi_z*e0
+                    t507 = dpsi_x*t492
+                    t508 = psi_x*t494
+                    t509 = dpsi_z*t496 + psi_z*t502 - t507 - t508
+                    t510 = e0*psi_z
+                    t511 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t512 = t497*t511
+                    t513 = psi_z*t511
+                    t514 = psi_y*t492 - psi_z*t488
+                    t515 = -t489 - t491 + t493 + t495
+                    dg[j3] = (dpsi_y*t498 + psi_y*t504 + psi_y*t512 + (0.5)*t489 + (0.5)*t491 -
+                        0.5*t493 - 0.5*t495 + t502 - t505*t506 - t505*t513 - t509*t510)
+                    dg[j3 + 1] = (-dpsi_x*t498 - 0.5*dpsi_z*t496 - psi_x*t504 - psi_x*t512 -
+                        0.5*psi_z*t502 + t490 + t506*t514 + (0.5)*t507 + (0.5)*t508 + t510*t515 +
+                        t513*t514)
+                    dg[j3 + 2] = (dpsi_x*e0*t505 - dpsi_y*e0*t514 + e0*psi_x*t509 - e0*psi_y*t515
+                        + psi_x*t505*t511 - psi_y*t511*t514 + t494 - 0.5*t499 - 0.5*t500 +
+                        (0.5)*t501 + (0.5)*t503)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

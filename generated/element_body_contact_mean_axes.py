@@ -28,7 +28,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import inverse_3
+from sebody.kernels.dense import columns_times, inverse_3
 from sebody.kernels.frame_search import mean_axes
 from sebody.kernels.rotations import inverse_tangent_coefficients
 
@@ -39,6 +39,9 @@ N_ROTATIONS = None
 CARRIERS = 1         # nodes behind those of the body: that of the surface
 CONSTANTS = FRAME_CONSTANTS + (
     Part("Gam", ("n", "turns"), "mean rotation of y, a column for each coordinate"),
+    Part("Hx", ("n", "n"), "second derivatives of the displacement along x", columns=True),
+    Part("Hy", ("n", "n"), "second derivatives of the displacement along y", columns=True),
+    Part("Hz", ("n", "n"), "second derivatives of the displacement along z", columns=True),
     Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each"),
     Part("point", ("D",), "the point in the undeformed frame [length]"),
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
@@ -66,9 +69,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 17
-OPERATIONS = {"residual": (748, 234, 358, 0),
-              "column": (830, 351, 881, 0)}
+WORK_ROWS = 23
+OPERATIONS = {"residual": (748, 270, 394, 3),
+              "column": (830, 444, 974, 3)}
 
 
 @kernel_function
@@ -85,18 +88,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     y = at(work, 2*row)
     e0s = at(work, 3*row)
     e1s = at(work, 4*row)
-    yd = at(work, 5*row)
-    eta = at(work, 6*row)
-    s = at(work, 7*row)
-    h = at(work, 8*row)
-    dqe = at(work, 9*row)
-    dve = at(work, 10*row)
-    dy = at(work, 11*row)
-    dyd = at(work, 12*row)
-    deta = at(work, 13*row)
-    dg = at(work, 14*row)
-    ds = at(work, 15*row)
-    dh = at(work, 16*row)
+    bent_x = at(work, 5*row)
+    bent_y = at(work, 6*row)
+    bent_z = at(work, 7*row)
+    yd = at(work, 8*row)
+    eta = at(work, 9*row)
+    s = at(work, 10*row)
+    h = at(work, 11*row)
+    dqe = at(work, 12*row)
+    dve = at(work, 13*row)
+    dy = at(work, 14*row)
+    dbent_x = at(work, 15*row)
+    dbent_y = at(work, 16*row)
+    dbent_z = at(work, 17*row)
+    dyd = at(work, 18*row)
+    deta = at(work, 19*row)
+    dg = at(work, 20*row)
+    ds = at(work, 21*row)
+    dh = at(work, 22*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)
@@ -107,7 +116,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
         Gam = at(X, 3*N_POSITIONS)
-        Phi = at(Gam, 3*n)
+        Hx = at(Gam, 3*n)
+        Hy = at(Hx, n*padded(n))
+        Hz = at(Hy, n*padded(n))
+        Phi = at(Hz, n*padded(n))
         point = at(Phi, 3*n)
         law = at(point, 3)
         g = at(forces, element*width)
@@ -151,6 +163,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             qm = qe[k]
             y[k] = qm
+        # change of the shapes, Hx y
+        columns_times(Hx, y, bent_x, n, n)
+        # change of the shapes, Hy y
+        columns_times(Hy, y, bent_y, n, n)
+        # change of the shapes, Hz y
+        columns_times(Hz, y, bent_z, n, n)
         # displacement of the point by positions
         up_x = up_y = up_z = 0.0
         for i in range(N_POSITIONS):
@@ -162,9 +180,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            up_x += Phi_positionx_x*u_x + Phi_positiony_x*u_y + Phi_positionz_x*u_z
-            up_y += Phi_positionx_y*u_x + Phi_positiony_y*u_y + Phi_positionz_y*u_z
-            up_z += Phi_positionx_z*u_x + Phi_positiony_z*u_y + Phi_positionz_z*u_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            up_x += (u_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + u_y*(Phi_positiony_x +
+                (0.5)*bent_x_positiony) + u_z*(Phi_positionz_x + (0.5)*bent_x_positionz))
+            up_y += (u_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + u_y*(Phi_positiony_y +
+                (0.5)*bent_y_positiony) + u_z*(Phi_positionz_y + (0.5)*bent_y_positionz))
+            up_z += (u_x*(Phi_positionx_z + (0.5)*bent_z_positionx) + u_y*(Phi_positiony_z +
+                (0.5)*bent_z_positiony) + u_z*(Phi_positionz_z + (0.5)*bent_z_positionz))
         # displacement of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -175,16 +205,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            up_x += Phi_rotationx_x*psi_x + Phi_rotationy_x*psi_y + Phi_rotationz_x*psi_z
-            up_y += Phi_rotationx_y*psi_x + Phi_rotationy_y*psi_y + Phi_rotationz_y*psi_z
-            up_z += Phi_rotationx_z*psi_x + Phi_rotationy_z*psi_y + Phi_rotationz_z*psi_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            up_x += (psi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx) + psi_y*(Phi_rotationy_x +
+                (0.5)*bent_x_rotationy) + psi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+            up_y += (psi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx) + psi_y*(Phi_rotationy_y +
+                (0.5)*bent_y_rotationy) + psi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+            up_z += (psi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx) + psi_y*(Phi_rotationy_z +
+                (0.5)*bent_z_rotationy) + psi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
         # displacement of the point by modes
         for k in range(MODES, n):
             ym = y[k]
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            up_x += Phi_mode_x*ym
-            up_y += Phi_mode_y*ym
-            up_z += Phi_mode_z*ym
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            up_x += ym*(Phi_mode_x + (0.5)*bent_x_mode)
+            up_y += ym*(Phi_mode_y + (0.5)*bent_y_mode)
+            up_z += ym*(Phi_mode_z + (0.5)*bent_z_mode)
         # arm of the point in the frame
         Xp_x, Xp_y, Xp_z = point[0], point[1], point[2]
         rp_x = Xp_x + up_x
@@ -361,10 +406,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            upd_x += Phi_positionx_x*eu_x + Phi_positiony_x*eu_y + Phi_positionz_x*eu_z
-            upd_y += Phi_positionx_y*eu_x + Phi_positiony_y*eu_y + Phi_positionz_y*eu_z
-            upd_z += Phi_positionx_z*eu_x + Phi_positiony_z*eu_y + Phi_positionz_z*eu_z
+            upd_x += (eu_x*(Phi_positionx_x + bent_x_positionx) + eu_y*(Phi_positiony_x +
+                bent_x_positiony) + eu_z*(Phi_positionz_x + bent_x_positionz))
+            upd_y += (eu_x*(Phi_positionx_y + bent_y_positionx) + eu_y*(Phi_positiony_y +
+                bent_y_positiony) + eu_z*(Phi_positionz_y + bent_y_positionz))
+            upd_z += (eu_x*(Phi_positionx_z + bent_z_positionx) + eu_y*(Phi_positiony_z +
+                bent_z_positiony) + eu_z*(Phi_positionz_z + bent_z_positionz))
         # rate of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -374,17 +431,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            upd_x += Phi_rotationx_x*ep_x + Phi_rotationy_x*ep_y + Phi_rotationz_x*ep_z
-            upd_y += Phi_rotationx_y*ep_x + Phi_rotationy_y*ep_y + Phi_rotationz_y*ep_z
-            upd_z += Phi_rotationx_z*ep_x + Phi_rotationy_z*ep_y + Phi_rotationz_z*ep_z
+            upd_x += (ep_x*(Phi_rotationx_x + bent_x_rotationx) + ep_y*(Phi_rotationy_x +
+                bent_x_rotationy) + ep_z*(Phi_rotationz_x + bent_x_rotationz))
+            upd_y += (ep_x*(Phi_rotationx_y + bent_y_rotationx) + ep_y*(Phi_rotationy_y +
+                bent_y_rotationy) + ep_z*(Phi_rotationz_y + bent_y_rotationz))
+            upd_z += (ep_x*(Phi_rotationx_z + bent_z_rotationx) + ep_y*(Phi_rotationy_z +
+                bent_z_rotationy) + ep_z*(Phi_rotationz_z + bent_z_rotationz))
         # rate of the point by modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
             em = eta[k]
-            upd_x += Phi_mode_x*em
-            upd_y += Phi_mode_y*em
-            upd_z += Phi_mode_z*em
+            upd_x += em*(Phi_mode_x + bent_x_mode)
+            upd_y += em*(Phi_mode_y + bent_y_mode)
+            upd_z += em*(Phi_mode_z + bent_z_mode)
         # velocity of the point
         t52 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
         t53 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
@@ -618,9 +690,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            s[i3] = Phi_positionx_x*fp_x + Phi_positionx_y*fp_y + Phi_positionx_z*fp_z
-            s[i3 + 1] = Phi_positiony_x*fp_x + Phi_positiony_y*fp_y + Phi_positiony_z*fp_z
-            s[i3 + 2] = Phi_positionz_x*fp_x + Phi_positionz_y*fp_y + Phi_positionz_z*fp_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            s[i3] = (fp_x*(Phi_positionx_x + bent_x_positionx) + fp_y*(Phi_positionx_y +
+                bent_y_positionx) + fp_z*(Phi_positionx_z + bent_z_positionx))
+            s[i3 + 1] = (fp_x*(Phi_positiony_x + bent_x_positiony) + fp_y*(Phi_positiony_y +
+                bent_y_positiony) + fp_z*(Phi_positiony_z + bent_z_positiony))
+            s[i3 + 2] = (fp_x*(Phi_positionz_x + bent_x_positionz) + fp_y*(Phi_positionz_y +
+                bent_y_positionz) + fp_z*(Phi_positionz_z + bent_z_positionz))
         # forces conjugate to the local coordinates: rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -630,13 +714,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            s[j3] = Phi_rotationx_x*fp_x + Phi_rotationx_y*fp_y + Phi_rotationx_z*fp_z
-            s[j3 + 1] = Phi_rotationy_x*fp_x + Phi_rotationy_y*fp_y + Phi_rotationy_z*fp_z
-            s[j3 + 2] = Phi_rotationz_x*fp_x + Phi_rotationz_y*fp_y + Phi_rotationz_z*fp_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            s[j3] = (fp_x*(Phi_rotationx_x + bent_x_rotationx) + fp_y*(Phi_rotationx_y +
+                bent_y_rotationx) + fp_z*(Phi_rotationx_z + bent_z_rotationx))
+            s[j3 + 1] = (fp_x*(Phi_rotationy_x + bent_x_rotationy) + fp_y*(Phi_rotationy_y +
+                bent_y_rotationy) + fp_z*(Phi_rotationy_z + bent_z_rotationy))
+            s[j3 + 2] = (fp_x*(Phi_rotationz_x + bent_x_rotationz) + fp_y*(Phi_rotationz_y +
+                bent_y_rotationz) + fp_z*(Phi_rotationz_z + bent_z_rotationz))
         # forces conjugate to the local coordinates: modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            s[k] = Phi_mode_x*fp_x + Phi_mode_y*fp_y + Phi_mode_z*fp_z
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            s[k] = (fp_x*(Phi_mode_x + bent_x_mode) + fp_y*(Phi_mode_y + bent_y_mode) +
+                fp_z*(Phi_mode_z + bent_z_mode))
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -1252,43 +1352,116 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # differential: change of the shapes, Hx y
+                columns_times(Hx, dy, dbent_x, n, n)
+                # differential: change of the shapes, Hy y
+                columns_times(Hy, dy, dbent_y, n, n)
+                # differential: change of the shapes, Hz y
+                columns_times(Hz, dy, dbent_z, n, n)
                 # differential: displacement of the point by positions
                 dup_x = dup_y = dup_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
+                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     Phi_positionx_x, Phi_positionx_y, Phi_positionx_z = (Phi[3*i3], Phi[3*i3 + 1],
                         Phi[3*i3 + 2])
                     Phi_positiony_x, Phi_positiony_y, Phi_positiony_z = (Phi[3*(i3 + 1)],
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dup_x += Phi_positionx_x*du_x + Phi_positiony_x*du_y + Phi_positionz_x*du_z
-                    dup_y += Phi_positionx_y*du_x + Phi_positiony_y*du_y + Phi_positionz_y*du_z
-                    dup_z += Phi_positionx_z*du_x + Phi_positiony_z*du_y + Phi_positionz_z*du_z
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    t328 = (0.5)*u_x
+                    t329 = (0.5)*u_y
+                    t330 = (0.5)*u_z
+                    dup_x += (dbent_x_positionx*t328 + dbent_x_positiony*t329 +
+                        dbent_x_positionz*t330 + du_x*(Phi_positionx_x + (0.5)*bent_x_positionx) +
+                        du_y*(Phi_positiony_x + (0.5)*bent_x_positiony) + du_z*(Phi_positionz_x +
+                        (0.5)*bent_x_positionz))
+                    dup_y += (dbent_y_positionx*t328 + dbent_y_positiony*t329 +
+                        dbent_y_positionz*t330 + du_x*(Phi_positionx_y + (0.5)*bent_y_positionx) +
+                        du_y*(Phi_positiony_y + (0.5)*bent_y_positiony) + du_z*(Phi_positionz_y +
+                        (0.5)*bent_y_positionz))
+                    dup_z += (dbent_z_positionx*t328 + dbent_z_positiony*t329 +
+                        dbent_z_positionz*t330 + du_x*(Phi_positionx_z + (0.5)*bent_z_positionx) +
+                        du_y*(Phi_positiony_z + (0.5)*bent_z_positiony) + du_z*(Phi_positionz_z +
+                        (0.5)*bent_z_positionz))
                 # differential: displacement of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Phi_rotationx_x, Phi_rotationx_y, Phi_rotationx_z = (Phi[3*j3], Phi[3*j3 + 1],
                         Phi[3*j3 + 2])
                     Phi_rotationy_x, Phi_rotationy_y, Phi_rotationy_z = (Phi[3*(j3 + 1)],
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dup_x += (Phi_rotationx_x*dpsi_x + Phi_rotationy_x*dpsi_y +
-                        Phi_rotationz_x*dpsi_z)
-                    dup_y += (Phi_rotationx_y*dpsi_x + Phi_rotationy_y*dpsi_y +
-                        Phi_rotationz_y*dpsi_z)
-                    dup_z += (Phi_rotationx_z*dpsi_x + Phi_rotationy_z*dpsi_y +
-                        Phi_rotationz_z*dpsi_z)
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    t331 = (0.5)*psi_x
+                    t332 = (0.5)*psi_y
+                    t333 = (0.5)*psi_z
+                    dup_x += (dbent_x_rotationx*t331 + dbent_x_rotationy*t332 +
+                        dbent_x_rotationz*t333 + dpsi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx)
+                        + dpsi_y*(Phi_rotationy_x + (0.5)*bent_x_rotationy) +
+                        dpsi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+                    dup_y += (dbent_y_rotationx*t331 + dbent_y_rotationy*t332 +
+                        dbent_y_rotationz*t333 + dpsi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx)
+                        + dpsi_y*(Phi_rotationy_y + (0.5)*bent_y_rotationy) +
+                        dpsi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+                    dup_z += (dbent_z_rotationx*t331 + dbent_z_rotationy*t332 +
+                        dbent_z_rotationz*t333 + dpsi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx)
+                        + dpsi_y*(Phi_rotationy_z + (0.5)*bent_z_rotationy) +
+                        dpsi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
                 # differential: displacement of the point by modes
                 for k in range(MODES, n):
+                    ym = y[k]
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
                     dym = dy[k]
-                    dup_x += Phi_mode_x*dym
-                    dup_y += Phi_mode_y*dym
-                    dup_z += Phi_mode_z*dym
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    t334 = (0.5)*ym
+                    dup_x += dbent_x_mode*t334 + dym*(Phi_mode_x + (0.5)*bent_x_mode)
+                    dup_y += dbent_y_mode*t334 + dym*(Phi_mode_y + (0.5)*bent_y_mode)
+                    dup_z += dbent_z_mode*t334 + dym*(Phi_mode_z + (0.5)*bent_z_mode)
                 # differential: arm of the point in the frame
                 drp_x = dup_x
                 drp_y = dup_y
@@ -1332,12 +1505,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t328 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    t329 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t330 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    rhs_x += -Gam_positionx_x*t328 - Gam_positiony_x*t329 - Gam_positionz_x*t330
-                    rhs_y += -Gam_positionx_y*t328 - Gam_positiony_y*t329 - Gam_positionz_y*t330
-                    rhs_z += -Gam_positionx_z*t328 - Gam_positiony_z*t329 - Gam_positionz_z*t330
+                    t335 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    t336 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t337 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    rhs_x += -Gam_positionx_x*t335 - Gam_positiony_x*t336 - Gam_positionz_x*t337
+                    rhs_y += -Gam_positionx_y*t335 - Gam_positiony_y*t336 - Gam_positionz_y*t337
+                    rhs_z += -Gam_positionx_z*t335 - Gam_positiony_z*t336 - Gam_positionz_z*t337
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1352,55 +1525,55 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t331 = Om0_y*dpsi_z
-                    t332 = Om_y*dpsi_z
-                    t333 = dOm_y*psi_z
-                    t334 = -Om_x*psi_y + Om_y*psi_x
-                    t335 = dpsi_y*e0
-                    t336 = Om0_x*psi_z - Om0_z*psi_x
-                    t337 = dpsi_z*e0
-                    t338 = Om0_x*dpsi_z
-                    t339 = Om0_z*dpsi_x
-                    t340 = t338 - t339
-                    t341 = e0*psi_z
-                    t342 = -Om0_x*psi_y + Om0_y*psi_x
-                    t343 = Om_x*psi_z - Om_z*psi_x
-                    t344 = Om0_x*dpsi_y
-                    t345 = Om0_y*dpsi_x - t344
-                    t346 = e0*psi_y
-                    t347 = Om_x*dpsi_y
-                    t348 = dOm_x*psi_y
-                    t349 = Om_y*dpsi_x + dOm_y*psi_x - t347 - t348
-                    t350 = Om_x*dpsi_z
-                    t351 = dOm_x*psi_z
-                    t352 = Om_z*dpsi_x
-                    t353 = dOm_z*psi_x
-                    t354 = t350 + t351 - t352 - t353
-                    t355 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t356 = psi_y*t355
-                    t357 = psi_z*t355
-                    t358 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
-                        0.5*t331 - 0.5*t332 - 0.5*t333 + t334*t335 + t334*t356 - t335*t342 +
-                        t336*t337 + t336*t357 - t337*t343 + t340*t341 - t341*t354 - t342*t356 -
-                        t343*t357 - t345*t346 + t346*t349)
-                    t359 = dpsi_x*e0
-                    t360 = -Om_y*psi_z + Om_z*psi_y
-                    t361 = e0*psi_x
-                    t362 = -Om0_y*psi_z + Om0_z*psi_y
-                    t363 = Om0_z*dpsi_y - t331
-                    t364 = Om_z*dpsi_y + dOm_z*psi_y - t332 - t333
-                    t365 = psi_x*t355
-                    t366 = (dOm_y - t334*t359 - t334*t365 + t337*t360 - t337*t362 + (0.5)*t338 -
-                        0.5*t339 - t341*t363 + t341*t364 + t342*t359 + t342*t365 + t345*t361 -
-                        t349*t361 + (0.5)*t350 + (0.5)*t351 - 0.5*t352 - 0.5*t353 + t357*t360 -
-                        t357*t362)
-                    t367 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
-                        t335*t360 + t335*t362 - t336*t359 - t336*t365 - t340*t361 + t343*t359 +
-                        t343*t365 - 0.5*t344 + t346*t363 - t346*t364 - 0.5*t347 - 0.5*t348 +
-                        t354*t361 - t356*t360 + t356*t362)
-                    rhs_x += -Gam_rotationx_x*t358 - Gam_rotationy_x*t366 - Gam_rotationz_x*t367
-                    rhs_y += -Gam_rotationx_y*t358 - Gam_rotationy_y*t366 - Gam_rotationz_y*t367
-                    rhs_z += -Gam_rotationx_z*t358 - Gam_rotationy_z*t366 - Gam_rotationz_z*t367
+                    t338 = Om0_y*dpsi_z
+                    t339 = Om_y*dpsi_z
+                    t340 = dOm_y*psi_z
+                    t341 = -Om_x*psi_y + Om_y*psi_x
+                    t342 = dpsi_y*e0
+                    t343 = Om0_x*psi_z - Om0_z*psi_x
+                    t344 = dpsi_z*e0
+                    t345 = Om0_x*dpsi_z
+                    t346 = Om0_z*dpsi_x
+                    t347 = t345 - t346
+                    t348 = e0*psi_z
+                    t349 = -Om0_x*psi_y + Om0_y*psi_x
+                    t350 = Om_x*psi_z - Om_z*psi_x
+                    t351 = Om0_x*dpsi_y
+                    t352 = Om0_y*dpsi_x - t351
+                    t353 = e0*psi_y
+                    t354 = Om_x*dpsi_y
+                    t355 = dOm_x*psi_y
+                    t356 = Om_y*dpsi_x + dOm_y*psi_x - t354 - t355
+                    t357 = Om_x*dpsi_z
+                    t358 = dOm_x*psi_z
+                    t359 = Om_z*dpsi_x
+                    t360 = dOm_z*psi_x
+                    t361 = t357 + t358 - t359 - t360
+                    t362 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t363 = psi_y*t362
+                    t364 = psi_z*t362
+                    t365 = ((0.5)*Om0_z*dpsi_y + (0.5)*Om_z*dpsi_y + dOm_x + (0.5)*dOm_z*psi_y -
+                        0.5*t338 - 0.5*t339 - 0.5*t340 + t341*t342 + t341*t363 - t342*t349 +
+                        t343*t344 + t343*t364 - t344*t350 + t347*t348 - t348*t361 - t349*t363 -
+                        t350*t364 - t352*t353 + t353*t356)
+                    t366 = dpsi_x*e0
+                    t367 = -Om_y*psi_z + Om_z*psi_y
+                    t368 = e0*psi_x
+                    t369 = -Om0_y*psi_z + Om0_z*psi_y
+                    t370 = Om0_z*dpsi_y - t338
+                    t371 = Om_z*dpsi_y + dOm_z*psi_y - t339 - t340
+                    t372 = psi_x*t362
+                    t373 = (dOm_y - t341*t366 - t341*t372 + t344*t367 - t344*t369 + (0.5)*t345 -
+                        0.5*t346 - t348*t370 + t348*t371 + t349*t366 + t349*t372 + t352*t368 -
+                        t356*t368 + (0.5)*t357 + (0.5)*t358 - 0.5*t359 - 0.5*t360 + t364*t367 -
+                        t364*t369)
+                    t374 = ((0.5)*Om0_y*dpsi_x + (0.5)*Om_y*dpsi_x + (0.5)*dOm_y*psi_x + dOm_z -
+                        t342*t367 + t342*t369 - t343*t366 - t343*t372 - t347*t368 + t350*t366 +
+                        t350*t372 - 0.5*t351 + t353*t370 - t353*t371 - 0.5*t354 - 0.5*t355 +
+                        t361*t368 - t363*t367 + t363*t369)
+                    rhs_x += -Gam_rotationx_x*t365 - Gam_rotationy_x*t373 - Gam_rotationz_x*t374
+                    rhs_y += -Gam_rotationx_y*t365 - Gam_rotationy_y*t373 - Gam_rotationz_y*t374
+                    rhs_z += -Gam_rotationx_z*t365 - Gam_rotationy_z*t373 - Gam_rotationz_z*t374
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]
                     dvm = dve[k]
@@ -1426,13 +1599,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t368 = X_y + u_y
-                    t369 = X_z + u_z
-                    t370 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t369 + dOm0_z*t368 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t369 - dOm0_z*t370 - dv0_y +
+                    t375 = X_y + u_y
+                    t376 = X_z + u_z
+                    t377 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t376 + dOm0_z*t375 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t376 - dOm0_z*t377 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t368 + dOm0_y*t370 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t375 + dOm0_y*t377 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1443,36 +1616,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t371 = (0.5)*Om0_z + (0.5)*Om_z
-                    t372 = Om0_y + Om_y
-                    t373 = (0.5)*dpsi_z
-                    t374 = (0.5)*dOm0_z + (0.5)*dOm_z
-                    t375 = dOm0_y + dOm_y
-                    t376 = (0.5)*psi_z
-                    t377 = -Om0_y + Om_y
-                    t378 = -Om0_x + Om_x
-                    t379 = psi_x*t377 - psi_y*t378
-                    t380 = -Om0_z + Om_z
-                    t381 = -psi_x*t380 + psi_z*t378
-                    t382 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t383 = -dOm0_y + dOm_y
-                    t384 = -dOm0_x + dOm_x
-                    t385 = dpsi_x*t377 - dpsi_y*t378 + psi_x*t383 - psi_y*t384
-                    t386 = -dOm0_z + dOm_z
-                    t387 = -dpsi_x*t380 + dpsi_z*t378 - psi_x*t386 + psi_z*t384
-                    t388 = Om0_x + Om_x
-                    t389 = dOm0_x + dOm_x
-                    t390 = psi_y*t380 - psi_z*t377
-                    t391 = dpsi_y*t380 - dpsi_z*t377 + psi_y*t386 - psi_z*t383
-                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t371 + e0*(dpsi_y*t379 - dpsi_z*t381 +
-                        psi_y*t385 - psi_z*t387) + psi_y*t374 - t372*t373 - t375*t376 +
-                        t382*(psi_y*t379 - psi_z*t381))
-                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t371 + e0*(-dpsi_x*t379 + dpsi_z*t390
-                        - psi_x*t385 + psi_z*t391) - psi_x*t374 + t373*t388 + t376*t389 +
-                        t382*(-psi_x*t379 + psi_z*t390))
-                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t372 - 0.5*dpsi_y*t388 +
-                        e0*(dpsi_x*t381 - dpsi_y*t390 + psi_x*t387 - psi_y*t391) +
-                        (0.5)*psi_x*t375 - 0.5*psi_y*t389 + t382*(psi_x*t381 - psi_y*t390))
+                    t378 = (0.5)*Om0_z + (0.5)*Om_z
+                    t379 = Om0_y + Om_y
+                    t380 = (0.5)*dpsi_z
+                    t381 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t382 = dOm0_y + dOm_y
+                    t383 = (0.5)*psi_z
+                    t384 = -Om0_y + Om_y
+                    t385 = -Om0_x + Om_x
+                    t386 = psi_x*t384 - psi_y*t385
+                    t387 = -Om0_z + Om_z
+                    t388 = -psi_x*t387 + psi_z*t385
+                    t389 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t390 = -dOm0_y + dOm_y
+                    t391 = -dOm0_x + dOm_x
+                    t392 = dpsi_x*t384 - dpsi_y*t385 + psi_x*t390 - psi_y*t391
+                    t393 = -dOm0_z + dOm_z
+                    t394 = -dpsi_x*t387 + dpsi_z*t385 - psi_x*t393 + psi_z*t391
+                    t395 = Om0_x + Om_x
+                    t396 = dOm0_x + dOm_x
+                    t397 = psi_y*t387 - psi_z*t384
+                    t398 = dpsi_y*t387 - dpsi_z*t384 + psi_y*t393 - psi_z*t390
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t378 + e0*(dpsi_y*t386 - dpsi_z*t388 +
+                        psi_y*t392 - psi_z*t394) + psi_y*t381 - t379*t380 - t382*t383 +
+                        t389*(psi_y*t386 - psi_z*t388))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t378 + e0*(-dpsi_x*t386 + dpsi_z*t397
+                        - psi_x*t392 + psi_z*t398) - psi_x*t381 + t380*t395 + t383*t396 +
+                        t389*(-psi_x*t386 + psi_z*t397))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t379 - 0.5*dpsi_y*t395 +
+                        e0*(dpsi_x*t388 - dpsi_y*t397 + psi_x*t394 - psi_y*t398) +
+                        (0.5)*psi_x*t382 - 0.5*psi_y*t396 + t389*(psi_x*t388 - psi_y*t397))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1487,10 +1660,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    dupd_x += Phi_positionx_x*deu_x + Phi_positiony_x*deu_y + Phi_positionz_x*deu_z
-                    dupd_y += Phi_positionx_y*deu_x + Phi_positiony_y*deu_y + Phi_positionz_y*deu_z
-                    dupd_z += Phi_positionx_z*deu_x + Phi_positiony_z*deu_y + Phi_positionz_z*deu_z
+                    dupd_x += (dbent_x_positionx*eu_x + dbent_x_positiony*eu_y +
+                        dbent_x_positionz*eu_z + deu_x*(Phi_positionx_x + bent_x_positionx) +
+                        deu_y*(Phi_positiony_x + bent_x_positiony) + deu_z*(Phi_positionz_x +
+                        bent_x_positionz))
+                    dupd_y += (dbent_y_positionx*eu_x + dbent_y_positiony*eu_y +
+                        dbent_y_positionz*eu_z + deu_x*(Phi_positionx_y + bent_y_positionx) +
+                        deu_y*(Phi_positiony_y + bent_y_positiony) + deu_z*(Phi_positionz_y +
+                        bent_y_positionz))
+                    dupd_z += (dbent_z_positionx*eu_x + dbent_z_positiony*eu_y +
+                        dbent_z_positionz*eu_z + deu_x*(Phi_positionx_z + bent_z_positionx) +
+                        deu_y*(Phi_positiony_z + bent_z_positiony) + deu_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: rate of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1500,30 +1701,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
                     dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    dupd_x += Phi_rotationx_x*dep_x + Phi_rotationy_x*dep_y + Phi_rotationz_x*dep_z
-                    dupd_y += Phi_rotationx_y*dep_x + Phi_rotationy_y*dep_y + Phi_rotationz_y*dep_z
-                    dupd_z += Phi_rotationx_z*dep_x + Phi_rotationy_z*dep_y + Phi_rotationz_z*dep_z
+                    dupd_x += (dbent_x_rotationx*ep_x + dbent_x_rotationy*ep_y +
+                        dbent_x_rotationz*ep_z + dep_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dep_y*(Phi_rotationy_x + bent_x_rotationy) + dep_z*(Phi_rotationz_x +
+                        bent_x_rotationz))
+                    dupd_y += (dbent_y_rotationx*ep_x + dbent_y_rotationy*ep_y +
+                        dbent_y_rotationz*ep_z + dep_x*(Phi_rotationx_y + bent_y_rotationx) +
+                        dep_y*(Phi_rotationy_y + bent_y_rotationy) + dep_z*(Phi_rotationz_y +
+                        bent_y_rotationz))
+                    dupd_z += (dbent_z_rotationx*ep_x + dbent_z_rotationy*ep_y +
+                        dbent_z_rotationz*ep_z + dep_x*(Phi_rotationx_z + bent_z_rotationx) +
+                        dep_y*(Phi_rotationy_z + bent_z_rotationy) + dep_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: rate of the point by modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    em = eta[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
                     dem = deta[k]
-                    dupd_x += Phi_mode_x*dem
-                    dupd_y += Phi_mode_y*dem
-                    dupd_z += Phi_mode_z*dem
+                    dupd_x += dbent_x_mode*em + dem*(Phi_mode_x + bent_x_mode)
+                    dupd_y += dbent_y_mode*em + dem*(Phi_mode_y + bent_y_mode)
+                    dupd_z += dbent_z_mode*em + dem*(Phi_mode_z + bent_z_mode)
                 # differential: velocity of the point
-                t392 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t393 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t394 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t395 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t396 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t397 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t392 + R0_xy*t393 + R0_xz*t394 + t395*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t396*(-R0_xx*dth0_z + R0_xz*dth0_x) + t397*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t392 + R0_yy*t393 + R0_yz*t394 + t395*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t396*(-R0_yx*dth0_z + R0_yz*dth0_x) + t397*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t392 + R0_zy*t393 + R0_zz*t394 + t395*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t396*(-R0_zx*dth0_z + R0_zz*dth0_x) + t397*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t399 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t400 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t401 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t402 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t403 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t404 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t399 + R0_xy*t400 + R0_xz*t401 + t402*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t403*(-R0_xx*dth0_z + R0_xz*dth0_x) + t404*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t399 + R0_yy*t400 + R0_yz*t401 + t402*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t403*(-R0_yx*dth0_z + R0_yz*dth0_x) + t404*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t399 + R0_zy*t400 + R0_zz*t401 + t402*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t403*(-R0_zx*dth0_z + R0_zz*dth0_x) + t404*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1536,139 +1772,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t398 = dxa_x - dxb_x
-                t399 = dxa_y - dxb_y
-                t400 = dxa_z - dxb_z
-                t401 = xa_x - xb_x
-                t402 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t403 = xa_y - xb_y
-                t404 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t405 = xa_z - xb_z
-                t406 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t407 = Rb_xx*t398 + Rb_yx*t399 + Rb_zx*t400 + t401*t402 + t403*t404 + t405*t406
-                t408 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t409 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t410 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t411 = Rb_xy*t398 + Rb_yy*t399 + Rb_zy*t400 + t401*t408 + t403*t409 + t405*t410
-                t412 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t413 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t414 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t415 = Rb_xz*t398 + Rb_yz*t399 + Rb_zz*t400 + t401*t412 + t403*t413 + t405*t414
-                t416 = va_x - vb_x
-                t417 = va_y - vb_y
-                t418 = va_z - vb_z
-                t419 = dva_x - uxb_x
-                t420 = dva_y - uxb_y
-                t421 = dva_z - uxb_z
-                t422 = Rb_xy*t401 + Rb_yy*t403 + Rb_zy*t405
-                t423 = Rb_xz*t401 + Rb_yz*t403 + Rb_zz*t405
-                t424 = Rb_xx*t401 + Rb_yx*t403 + Rb_zx*t405
-                dplace_1 = t407
-                dplace_2 = t411
-                dplace_3 = t415
-                drate_1 = -Omb_y*t415 + Omb_z*t411 + t402*t416 + t404*t417 + t406*t418
-                urate_1 = Rb_xx*t419 + Rb_yx*t420 + Rb_zx*t421 + t422*uthb_z - t423*uthb_y
-                drate_2 = Omb_x*t415 - Omb_z*t407 + t408*t416 + t409*t417 + t410*t418
-                urate_2 = Rb_xy*t419 + Rb_yy*t420 + Rb_zy*t421 + t423*uthb_x - t424*uthb_z
-                drate_3 = -Omb_x*t411 + Omb_y*t407 + t412*t416 + t413*t417 + t414*t418
-                urate_3 = Rb_xz*t419 + Rb_yz*t420 + Rb_zz*t421 - t422*uthb_x + t424*uthb_y
-                t425 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t426 = normal_1*normal_3
-                t427 = normal_2*normal_3
-                t428 = 1 - normal_3*normal_3
-                t429 = -friction_1*t426 - friction_2*t427 + friction_3*t428 - normal_3*push
-                t430 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t431 = normal_1*normal_2
-                t432 = friction_3*normal_3
-                t433 = 1 - normal_2*normal_2
-                t434 = -friction_1*t431 + friction_2*t433 - normal_2*push - normal_2*t432
-                t435 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t436 = 1 - normal_1*normal_1
-                t437 = friction_1*t436 - friction_2*t431 - friction_3*t426 - normal_1*push
-                t438 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t439 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t405 = dxa_x - dxb_x
+                t406 = dxa_y - dxb_y
+                t407 = dxa_z - dxb_z
+                t408 = xa_x - xb_x
+                t409 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t410 = xa_y - xb_y
+                t411 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t412 = xa_z - xb_z
+                t413 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t414 = Rb_xx*t405 + Rb_yx*t406 + Rb_zx*t407 + t408*t409 + t410*t411 + t412*t413
+                t415 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t416 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t417 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t418 = Rb_xy*t405 + Rb_yy*t406 + Rb_zy*t407 + t408*t415 + t410*t416 + t412*t417
+                t419 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t420 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t421 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t422 = Rb_xz*t405 + Rb_yz*t406 + Rb_zz*t407 + t408*t419 + t410*t420 + t412*t421
+                t423 = va_x - vb_x
+                t424 = va_y - vb_y
+                t425 = va_z - vb_z
+                t426 = dva_x - uxb_x
+                t427 = dva_y - uxb_y
+                t428 = dva_z - uxb_z
+                t429 = Rb_xy*t408 + Rb_yy*t410 + Rb_zy*t412
+                t430 = Rb_xz*t408 + Rb_yz*t410 + Rb_zz*t412
+                t431 = Rb_xx*t408 + Rb_yx*t410 + Rb_zx*t412
+                dplace_1 = t414
+                dplace_2 = t418
+                dplace_3 = t422
+                drate_1 = -Omb_y*t422 + Omb_z*t418 + t409*t423 + t411*t424 + t413*t425
+                urate_1 = Rb_xx*t426 + Rb_yx*t427 + Rb_zx*t428 + t429*uthb_z - t430*uthb_y
+                drate_2 = Omb_x*t422 - Omb_z*t414 + t415*t423 + t416*t424 + t417*t425
+                urate_2 = Rb_xy*t426 + Rb_yy*t427 + Rb_zy*t428 + t430*uthb_x - t431*uthb_z
+                drate_3 = -Omb_x*t418 + Omb_y*t414 + t419*t423 + t420*t424 + t421*t425
+                urate_3 = Rb_xz*t426 + Rb_yz*t427 + Rb_zz*t428 - t429*uthb_x + t431*uthb_y
+                t432 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t433 = normal_1*normal_3
+                t434 = normal_2*normal_3
+                t435 = 1 - normal_3*normal_3
+                t436 = -friction_1*t433 - friction_2*t434 + friction_3*t435 - normal_3*push
+                t437 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t438 = normal_1*normal_2
+                t439 = friction_3*normal_3
+                t440 = 1 - normal_2*normal_2
+                t441 = -friction_1*t438 + friction_2*t440 - normal_2*push - normal_2*t439
+                t442 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t443 = 1 - normal_1*normal_1
+                t444 = friction_1*t443 - friction_2*t438 - friction_3*t433 - normal_1*push
+                t445 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t446 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t440 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t447 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t441 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t448 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t442 = -normal_1*t438 - t426*t440 - t431*t439 + t436*t441
-                t443 = -normal_2*t438 - t427*t440 - t431*t441 + t433*t439
-                t444 = -normal_3*t438 - t426*t441 - t427*t439 + t428*t440
-                t445 = dnormal_1_by_place_1*dplace_1
-                t446 = dnormal_1_by_place_2*dplace_2
-                t447 = dnormal_1_by_place_3*dplace_3
-                t448 = t445 + t446 + t447
-                t449 = dnormal_2_by_place_1*dplace_1
-                t450 = dnormal_2_by_place_2*dplace_2
-                t451 = dnormal_2_by_place_3*dplace_3
-                t452 = t449 + t450 + t451
-                t453 = friction_2*t452
-                t454 = normal_2*t448
-                t455 = dnormal_3_by_place_1*dplace_1
-                t456 = dnormal_3_by_place_2*dplace_2
-                t457 = dnormal_3_by_place_3*dplace_3
-                t458 = t455 + t456 + t457
-                t459 = friction_3*t458
-                t460 = friction_1*normal_1
-                t461 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t449 = -normal_1*t445 - t433*t447 - t438*t446 + t443*t448
+                t450 = -normal_2*t445 - t434*t447 - t438*t448 + t440*t446
+                t451 = -normal_3*t445 - t433*t448 - t434*t446 + t435*t447
+                t452 = dnormal_1_by_place_1*dplace_1
+                t453 = dnormal_1_by_place_2*dplace_2
+                t454 = dnormal_1_by_place_3*dplace_3
+                t455 = t452 + t453 + t454
+                t456 = dnormal_2_by_place_1*dplace_1
+                t457 = dnormal_2_by_place_2*dplace_2
+                t458 = dnormal_2_by_place_3*dplace_3
+                t459 = t456 + t457 + t458
+                t460 = friction_2*t459
+                t461 = normal_2*t455
+                t462 = dnormal_3_by_place_1*dplace_1
+                t463 = dnormal_3_by_place_2*dplace_2
+                t464 = dnormal_3_by_place_3*dplace_3
+                t465 = t462 + t463 + t464
+                t466 = friction_3*t465
+                t467 = friction_1*normal_1
+                t468 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t462 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t469 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t463 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t470 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t464 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t471 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t465 = (-friction_2*t454 - normal_1*t453 - normal_1*t459 - normal_1*t461 -
-                    push*t448 - t426*t463 - t431*t462 - t432*t448 + t436*t464 - t460*(2*t445 +
-                    2*t446 + 2*t447))
-                t466 = friction_2*normal_2
-                t467 = (-friction_1*t454 - normal_2*t459 - normal_2*t461 - push*t452 - t427*t463 -
-                    t431*t464 - t432*t452 + t433*t462 - t452*t460 - t466*(2*t449 + 2*t450 +
-                    2*t451))
-                t468 = (-friction_1*normal_3*t448 - normal_3*t453 - normal_3*t461 - push*t458 -
-                    t426*t464 - t427*t462 + t428*t463 - t432*(2*t455 + 2*t456 + 2*t457) -
-                    t458*t460 - t458*t466)
-                t469 = (Rb_xx*t442 + Rb_xx*t465 + Rb_xy*t443 + Rb_xy*t467 + Rb_xz*t444 +
-                    Rb_xz*t468 + t425*t429 + t430*t434 + t435*t437)
-                t470 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t471 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t472 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t473 = (Rb_yx*t442 + Rb_yx*t465 + Rb_yy*t443 + Rb_yy*t467 + Rb_yz*t444 +
-                    Rb_yz*t468 + t429*t470 + t434*t471 + t437*t472)
-                t474 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t475 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t476 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t477 = (Rb_zx*t442 + Rb_zx*t465 + Rb_zy*t443 + Rb_zy*t467 + Rb_zz*t444 +
-                    Rb_zz*t468 + t429*t474 + t434*t475 + t437*t476)
-                t478 = xa_x - xb_x
-                t479 = xa_y - xb_y
-                t480 = xa_z - xb_z
-                t481 = Rb_xz*t478 + Rb_yz*t479 + Rb_zz*t480
-                t482 = Rb_xy*t478 + Rb_yy*t479 + Rb_zy*t480
-                t483 = -t482
-                t484 = dxa_x - dxb_x
-                t485 = dxa_y - dxb_y
-                t486 = dxa_z - dxb_z
-                t487 = Rb_xz*t484 + Rb_yz*t485 + Rb_zz*t486 + t425*t478 + t470*t479 + t474*t480
-                t488 = Rb_xy*t484 + Rb_yy*t485 + Rb_zy*t486 + t430*t478 + t471*t479 + t475*t480
-                t489 = Rb_xx*t478 + Rb_yx*t479 + Rb_zx*t480
-                t490 = -t481
-                t491 = Rb_xx*t484 + Rb_yx*t485 + Rb_zx*t486 + t435*t478 + t472*t479 + t476*t480
-                t492 = -t489
-                dFp_x = t469
-                dFp_y = t473
-                dFp_z = t477
-                dg[n] = -t469
-                dg[n + 1] = -t473
-                dg[n + 2] = -t477
-                dg[n + 3] = -t429*t488 + t434*t487 + t443*t481 + t444*t483 + t467*t481 + t468*t483
-                dg[n + 4] = t429*t491 - t437*t487 + t442*t490 + t444*t489 + t465*t490 + t468*t489
-                dg[n + 5] = -t434*t491 + t437*t488 + t442*t482 + t443*t492 + t465*t482 + t467*t492
+                t472 = (-friction_2*t461 - normal_1*t460 - normal_1*t466 - normal_1*t468 -
+                    push*t455 - t433*t470 - t438*t469 - t439*t455 + t443*t471 - t467*(2*t452 +
+                    2*t453 + 2*t454))
+                t473 = friction_2*normal_2
+                t474 = (-friction_1*t461 - normal_2*t466 - normal_2*t468 - push*t459 - t434*t470 -
+                    t438*t471 - t439*t459 + t440*t469 - t459*t467 - t473*(2*t456 + 2*t457 +
+                    2*t458))
+                t475 = (-friction_1*normal_3*t455 - normal_3*t460 - normal_3*t468 - push*t465 -
+                    t433*t471 - t434*t469 + t435*t470 - t439*(2*t462 + 2*t463 + 2*t464) -
+                    t465*t467 - t465*t473)
+                t476 = (Rb_xx*t449 + Rb_xx*t472 + Rb_xy*t450 + Rb_xy*t474 + Rb_xz*t451 +
+                    Rb_xz*t475 + t432*t436 + t437*t441 + t442*t444)
+                t477 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t478 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t479 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t480 = (Rb_yx*t449 + Rb_yx*t472 + Rb_yy*t450 + Rb_yy*t474 + Rb_yz*t451 +
+                    Rb_yz*t475 + t436*t477 + t441*t478 + t444*t479)
+                t481 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t482 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t483 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t484 = (Rb_zx*t449 + Rb_zx*t472 + Rb_zy*t450 + Rb_zy*t474 + Rb_zz*t451 +
+                    Rb_zz*t475 + t436*t481 + t441*t482 + t444*t483)
+                t485 = xa_x - xb_x
+                t486 = xa_y - xb_y
+                t487 = xa_z - xb_z
+                t488 = Rb_xz*t485 + Rb_yz*t486 + Rb_zz*t487
+                t489 = Rb_xy*t485 + Rb_yy*t486 + Rb_zy*t487
+                t490 = -t489
+                t491 = dxa_x - dxb_x
+                t492 = dxa_y - dxb_y
+                t493 = dxa_z - dxb_z
+                t494 = Rb_xz*t491 + Rb_yz*t492 + Rb_zz*t493 + t432*t485 + t477*t486 + t481*t487
+                t495 = Rb_xy*t491 + Rb_yy*t492 + Rb_zy*t493 + t437*t485 + t478*t486 + t482*t487
+                t496 = Rb_xx*t485 + Rb_yx*t486 + Rb_zx*t487
+                t497 = -t488
+                t498 = Rb_xx*t491 + Rb_yx*t492 + Rb_zx*t493 + t442*t485 + t479*t486 + t483*t487
+                t499 = -t496
+                dFp_x = t476
+                dFp_y = t480
+                dFp_z = t484
+                dg[n] = -t476
+                dg[n + 1] = -t480
+                dg[n + 2] = -t484
+                dg[n + 3] = -t436*t495 + t441*t494 + t450*t488 + t451*t490 + t474*t488 + t475*t490
+                dg[n + 4] = t436*t498 - t444*t494 + t449*t497 + t451*t496 + t472*t497 + t475*t496
+                dg[n + 5] = -t441*t498 + t444*t495 + t449*t489 + t450*t499 + t472*t489 + t474*t499
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1686,11 +1922,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-                    ds[i3] = Phi_positionx_x*dfp_x + Phi_positionx_y*dfp_y + Phi_positionx_z*dfp_z
-                    ds[i3 + 1] = (Phi_positiony_x*dfp_x + Phi_positiony_y*dfp_y +
-                        Phi_positiony_z*dfp_z)
-                    ds[i3 + 2] = (Phi_positionz_x*dfp_x + Phi_positionz_y*dfp_y +
-                        Phi_positionz_z*dfp_z)
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    ds[i3] = (dbent_x_positionx*fp_x + dbent_y_positionx*fp_y +
+                        dbent_z_positionx*fp_z + dfp_x*(Phi_positionx_x + bent_x_positionx) +
+                        dfp_y*(Phi_positionx_y + bent_y_positionx) + dfp_z*(Phi_positionx_z +
+                        bent_z_positionx))
+                    ds[i3 + 1] = (dbent_x_positiony*fp_x + dbent_y_positiony*fp_y +
+                        dbent_z_positiony*fp_z + dfp_x*(Phi_positiony_x + bent_x_positiony) +
+                        dfp_y*(Phi_positiony_y + bent_y_positiony) + dfp_z*(Phi_positiony_z +
+                        bent_z_positiony))
+                    ds[i3 + 2] = (dbent_x_positionz*fp_x + dbent_y_positionz*fp_y +
+                        dbent_z_positionz*fp_z + dfp_x*(Phi_positionz_x + bent_x_positionz) +
+                        dfp_y*(Phi_positionz_y + bent_y_positionz) + dfp_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: forces conjugate to the local coordinates: rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1700,15 +1961,48 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-                    ds[j3] = Phi_rotationx_x*dfp_x + Phi_rotationx_y*dfp_y + Phi_rotationx_z*dfp_z
-                    ds[j3 + 1] = (Phi_rotationy_x*dfp_x + Phi_rotationy_y*dfp_y +
-                        Phi_rotationy_z*dfp_z)
-                    ds[j3 + 2] = (Phi_rotationz_x*dfp_x + Phi_rotationz_y*dfp_y +
-                        Phi_rotationz_z*dfp_z)
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    ds[j3] = (dbent_x_rotationx*fp_x + dbent_y_rotationx*fp_y +
+                        dbent_z_rotationx*fp_z + dfp_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dfp_y*(Phi_rotationx_y + bent_y_rotationx) + dfp_z*(Phi_rotationx_z +
+                        bent_z_rotationx))
+                    ds[j3 + 1] = (dbent_x_rotationy*fp_x + dbent_y_rotationy*fp_y +
+                        dbent_z_rotationy*fp_z + dfp_x*(Phi_rotationy_x + bent_x_rotationy) +
+                        dfp_y*(Phi_rotationy_y + bent_y_rotationy) + dfp_z*(Phi_rotationy_z +
+                        bent_z_rotationy))
+                    ds[j3 + 2] = (dbent_x_rotationz*fp_x + dbent_y_rotationz*fp_y +
+                        dbent_z_rotationz*fp_z + dfp_x*(Phi_rotationz_x + bent_x_rotationz) +
+                        dfp_y*(Phi_rotationz_y + bent_y_rotationz) + dfp_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: forces conjugate to the local coordinates: modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-                    ds[k] = Phi_mode_x*dfp_x + Phi_mode_y*dfp_y + Phi_mode_z*dfp_z
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    ds[k] = (dbent_x_mode*fp_x + dbent_y_mode*fp_y + dbent_z_mode*fp_z +
+                        dfp_x*(Phi_mode_x + bent_x_mode) + dfp_y*(Phi_mode_y + bent_y_mode) +
+                        dfp_z*(Phi_mode_z + bent_z_mode))
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1720,15 +2014,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t493 = X_z + u_z
-                    t494 = X_y + u_y
-                    t495 = X_x + u_x
+                    t500 = X_z + u_z
+                    t501 = X_y + u_y
+                    t502 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t493 - df_z*t494 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t493 + df_z*t495 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t494 - df_y*t495 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t500 - df_z*t501 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t500 + df_z*t502 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t501 - df_y*t502 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1742,25 +2036,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t496 = -m_x*psi_y + m_y*psi_x
-                    t497 = m_x*psi_z - m_z*psi_x
-                    t498 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t499 = dm_x*psi_z
-                    t500 = dpsi_z*m_x
-                    t501 = -dm_z*psi_x - dpsi_x*m_z + t499 + t500
-                    t502 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t503 = e1*t502
-                    t504 = -m_y*psi_z + m_z*psi_y
-                    t505 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t496 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t497 + (0.5)*dpsi_z*m_y - e0*psi_y*t498 +
-                        e0*psi_z*t501 + e1*psi_z*t497*t502 - psi_y*t496*t503)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t496 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t504 + e0*psi_x*t498 - e0*psi_z*t505 + e1*psi_x*t496*t502 -
-                        psi_z*t503*t504 - 0.5*t499 - 0.5*t500)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t497 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t504 + (0.5)*dpsi_y*m_x - e0*psi_x*t501 +
-                        e0*psi_y*t505 + e1*psi_y*t502*t504 - psi_x*t497*t503)
+                    t503 = -m_x*psi_y + m_y*psi_x
+                    t504 = m_x*psi_z - m_z*psi_x
+                    t505 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t506 = dm_x*psi_z
+                    t507 = dpsi_z*m_x
+                    t508 = -dm_z*psi_x - dpsi_x*m_z + t506 + t507
+                    t509 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t510 = e1*t509
+                    t511 = -m_y*psi_z + m_z*psi_y
+                    t512 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t503 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t504 + (0.5)*dpsi_z*m_y - e0*psi_y*t505 +
+                        e0*psi_z*t508 + e1*psi_z*t504*t509 - psi_y*t503*t510)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t503 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t511 + e0*psi_x*t505 - e0*psi_z*t512 + e1*psi_x*t503*t509 -
+                        psi_z*t510*t511 - 0.5*t506 - 0.5*t507)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t504 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t511 + (0.5)*dpsi_y*m_x - e0*psi_x*t508 +
+                        e0*psi_y*t512 + e1*psi_y*t509*t511 - psi_x*t504*t510)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1772,12 +2066,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     Gam_positionz_x, Gam_positionz_y, Gam_positionz_z = (Gam[3*(i3 + 2)],
                         Gam[3*(i3 + 2) + 1], Gam[3*(i3 + 2) + 2])
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t506 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
-                    t507 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
-                    t508 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
-                    rhs_x += du_y*t507 - du_z*t506
-                    rhs_y += -du_x*t507 + du_z*t508
-                    rhs_z += du_x*t506 - du_y*t508
+                    t513 = Gam_positiony_x*wp_x + Gam_positiony_y*wp_y + Gam_positiony_z*wp_z
+                    t514 = Gam_positionz_x*wp_x + Gam_positionz_y*wp_y + Gam_positionz_z*wp_z
+                    t515 = Gam_positionx_x*wp_x + Gam_positionx_y*wp_y + Gam_positionx_z*wp_z
+                    rhs_x += du_y*t514 - du_z*t513
+                    rhs_y += -du_x*t514 + du_z*t515
+                    rhs_z += du_x*t513 - du_y*t515
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
                     psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
@@ -1790,36 +2084,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t509 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
-                    t510 = dpsi_y*t509
-                    t511 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
-                    t512 = dpsi_z*t511
-                    t513 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
-                    t514 = psi_x*t511 - psi_y*t513
-                    t515 = e0*t514
-                    t516 = dpsi_x*t511
-                    t517 = dpsi_y*t513
-                    t518 = e0*(t516 - t517)
-                    t519 = -psi_x*t509 + psi_z*t513
-                    t520 = dpsi_x*t509
-                    t521 = dpsi_z*t513 - t520
-                    t522 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t523 = e1*t522
-                    t524 = t514*t523
-                    t525 = psi_y*t509 - psi_z*t511
-                    t526 = t510 - t512
-                    rhs_x += (dpsi_y*t515 - dpsi_z*e0*t519 - e0*psi_z*t521 + psi_y*t518 +
-                        psi_y*t524 - psi_z*t519*t523 + (0.5)*t510 - 0.5*t512)
-                    rhs_y += (-dpsi_x*t515 + dpsi_z*e0*t525 + (0.5)*dpsi_z*t513 + e0*psi_z*t526 +
-                        e1*psi_z*t522*t525 - psi_x*t518 - psi_x*t524 - 0.5*t520)
-                    rhs_z += (dpsi_x*e0*t519 - dpsi_y*e0*t525 + e0*psi_x*t521 - e0*psi_y*t526 +
-                        psi_x*t519*t523 - psi_y*t523*t525 + (0.5)*t516 - 0.5*t517)
-                t527 = dW_x + rhs_x
-                t528 = dW_y + rhs_y
-                t529 = dW_z + rhs_z
-                dwp_x = Bxx*t527 + Byx*t528 + Bzx*t529
-                dwp_y = Bxy*t527 + Byy*t528 + Bzy*t529
-                dwp_z = Bxz*t527 + Byz*t528 + Bzz*t529
+                    t516 = Gam_rotationz_x*wp_x + Gam_rotationz_y*wp_y + Gam_rotationz_z*wp_z
+                    t517 = dpsi_y*t516
+                    t518 = Gam_rotationy_x*wp_x + Gam_rotationy_y*wp_y + Gam_rotationy_z*wp_z
+                    t519 = dpsi_z*t518
+                    t520 = Gam_rotationx_x*wp_x + Gam_rotationx_y*wp_y + Gam_rotationx_z*wp_z
+                    t521 = psi_x*t518 - psi_y*t520
+                    t522 = e0*t521
+                    t523 = dpsi_x*t518
+                    t524 = dpsi_y*t520
+                    t525 = e0*(t523 - t524)
+                    t526 = -psi_x*t516 + psi_z*t520
+                    t527 = dpsi_x*t516
+                    t528 = dpsi_z*t520 - t527
+                    t529 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t530 = e1*t529
+                    t531 = t521*t530
+                    t532 = psi_y*t516 - psi_z*t518
+                    t533 = t517 - t519
+                    rhs_x += (dpsi_y*t522 - dpsi_z*e0*t526 - e0*psi_z*t528 + psi_y*t525 +
+                        psi_y*t531 - psi_z*t526*t530 + (0.5)*t517 - 0.5*t519)
+                    rhs_y += (-dpsi_x*t522 + dpsi_z*e0*t532 + (0.5)*dpsi_z*t520 + e0*psi_z*t533 +
+                        e1*psi_z*t529*t532 - psi_x*t525 - psi_x*t531 - 0.5*t527)
+                    rhs_z += (dpsi_x*e0*t526 - dpsi_y*e0*t532 + e0*psi_x*t528 - e0*psi_y*t533 +
+                        psi_x*t526*t530 - psi_y*t530*t532 + (0.5)*t523 - 0.5*t524)
+                t534 = dW_x + rhs_x
+                t535 = dW_y + rhs_y
+                t536 = dW_z + rhs_z
+                dwp_x = Bxx*t534 + Byx*t535 + Bzx*t536
+                dwp_y = Bxy*t534 + Byy*t535 + Bzy*t536
+                dwp_z = Bxz*t534 + Byz*t535 + Bzz*t536
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
@@ -1878,39 +2172,39 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t530 = -Gam_rotationz_x*wp_x - Gam_rotationz_y*wp_y - Gam_rotationz_z*wp_z + m_z
-                    t531 = dpsi_y*t530
-                    t532 = (Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
+                    t537 = -Gam_rotationz_x*wp_x - Gam_rotationz_y*wp_y - Gam_rotationz_z*wp_z + m_z
+                    t538 = dpsi_y*t537
+                    t539 = (Gam_rotationz_x*dwp_x + Gam_rotationz_y*dwp_y + Gam_rotationz_z*dwp_z
                         - dm_z)
-                    t533 = -t532
-                    t534 = psi_y*t533
-                    t535 = -Gam_rotationy_x*wp_x - Gam_rotationy_y*wp_y - Gam_rotationy_z*wp_z + m_y
-                    t536 = (Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
+                    t540 = -t539
+                    t541 = psi_y*t540
+                    t542 = -Gam_rotationy_x*wp_x - Gam_rotationy_y*wp_y - Gam_rotationy_z*wp_z + m_y
+                    t543 = (Gam_rotationy_x*dwp_x + Gam_rotationy_y*dwp_y + Gam_rotationy_z*dwp_z
                         - dm_y)
-                    t537 = -t536
-                    t538 = -Gam_rotationx_x*wp_x - Gam_rotationx_y*wp_y - Gam_rotationx_z*wp_z + m_x
-                    t539 = -psi_x*t530 + psi_z*t538
-                    t540 = (Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
+                    t544 = -t543
+                    t545 = -Gam_rotationx_x*wp_x - Gam_rotationx_y*wp_y - Gam_rotationx_z*wp_z + m_x
+                    t546 = -psi_x*t537 + psi_z*t545
+                    t547 = (Gam_rotationx_x*dwp_x + Gam_rotationx_y*dwp_y + Gam_rotationx_z*dwp_z
                         - dm_x)
-                    t541 = -t540
-                    t542 = -dpsi_x*t530 + dpsi_z*t538 - psi_x*t533 + psi_z*t541
-                    t543 = psi_x*t535 - psi_y*t538
-                    t544 = dpsi_x*t535
-                    t545 = psi_x*t537
-                    t546 = -dpsi_y*t538 - psi_y*t541 + t544 + t545
-                    t547 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t548 = e1*t547
-                    t549 = psi_y*t530 - psi_z*t535
-                    t550 = -dpsi_z*t535 - psi_z*t537 + t531 + t534
-                    dg[j3] = (dpsi_y*e0*t543 - dpsi_z*e0*t539 + (0.5)*dpsi_z*t535 + e0*psi_y*t546
-                        - e0*psi_z*t542 + e1*psi_y*t543*t547 + (0.5)*psi_z*t537 - psi_z*t539*t548
-                        - 0.5*t531 - 0.5*t534 - t540)
-                    dg[j3 + 1] = (-dpsi_x*e0*t543 + (0.5)*dpsi_x*t530 + dpsi_z*e0*t549 -
-                        0.5*dpsi_z*t538 - e0*psi_x*t546 + e0*psi_z*t550 + e1*psi_z*t547*t549 +
-                        (0.5)*psi_x*t533 - psi_x*t543*t548 - 0.5*psi_z*t541 - t536)
-                    dg[j3 + 2] = (dpsi_x*e0*t539 - dpsi_y*e0*t549 + (0.5)*dpsi_y*t538 +
-                        e0*psi_x*t542 - e0*psi_y*t550 + e1*psi_x*t539*t547 + (0.5)*psi_y*t541 -
-                        psi_y*t548*t549 - t532 - 0.5*t544 - 0.5*t545)
+                    t548 = -t547
+                    t549 = -dpsi_x*t537 + dpsi_z*t545 - psi_x*t540 + psi_z*t548
+                    t550 = psi_x*t542 - psi_y*t545
+                    t551 = dpsi_x*t542
+                    t552 = psi_x*t544
+                    t553 = -dpsi_y*t545 - psi_y*t548 + t551 + t552
+                    t554 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t555 = e1*t554
+                    t556 = psi_y*t537 - psi_z*t542
+                    t557 = -dpsi_z*t542 - psi_z*t544 + t538 + t541
+                    dg[j3] = (dpsi_y*e0*t550 - dpsi_z*e0*t546 + (0.5)*dpsi_z*t542 + e0*psi_y*t553
+                        - e0*psi_z*t549 + e1*psi_y*t550*t554 + (0.5)*psi_z*t544 - psi_z*t546*t555
+                        - 0.5*t538 - 0.5*t541 - t547)
+                    dg[j3 + 1] = (-dpsi_x*e0*t550 + (0.5)*dpsi_x*t537 + dpsi_z*e0*t556 -
+                        0.5*dpsi_z*t545 - e0*psi_x*t553 + e0*psi_z*t557 + e1*psi_z*t554*t556 +
+                        (0.5)*psi_x*t540 - psi_x*t550*t555 - 0.5*psi_z*t548 - t543)
+                    dg[j3 + 2] = (dpsi_x*e0*t546 - dpsi_y*e0*t556 + (0.5)*dpsi_y*t545 +
+                        e0*psi_x*t549 - e0*psi_y*t557 + e1*psi_x*t546*t554 + (0.5)*psi_y*t548 -
+                        psi_y*t555*t556 - t539 - 0.5*t551 - 0.5*t552)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     Gam_mode_x, Gam_mode_y, Gam_mode_z = Gam[3*k], Gam[3*k + 1], Gam[3*k + 2]

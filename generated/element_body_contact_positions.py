@@ -28,7 +28,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
-from sebody.kernels.dense import inverse_3
+from sebody.kernels.dense import columns_times, inverse_3
 from sebody.kernels.frame_search import best_fit
 from sebody.kernels.rotations import inverse_tangent_coefficients, relative_rotations
 
@@ -38,6 +38,9 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CARRIERS = 1         # nodes behind those of the body: that of the surface
 CONSTANTS = FRAME_CONSTANTS + (
+    Part("Hx", ("n", "n"), "second derivatives of the displacement along x", columns=True),
+    Part("Hy", ("n", "n"), "second derivatives of the displacement along y", columns=True),
+    Part("Hz", ("n", "n"), "second derivatives of the displacement along z", columns=True),
     Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each"),
     Part("point", ("D",), "the point in the undeformed frame [length]"),
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
@@ -65,9 +68,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 17
-OPERATIONS = {"residual": (508, 225, 208, 0),
-              "column": (830, 342, 470, 0)}
+WORK_ROWS = 23
+OPERATIONS = {"residual": (508, 261, 244, 3),
+              "column": (830, 435, 563, 3)}
 
 
 @kernel_function
@@ -84,18 +87,24 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     y = at(work, 2*row)
     e0s = at(work, 3*row)
     e1s = at(work, 4*row)
-    yd = at(work, 5*row)
-    eta = at(work, 6*row)
-    s = at(work, 7*row)
-    h = at(work, 8*row)
-    dqe = at(work, 9*row)
-    dve = at(work, 10*row)
-    dy = at(work, 11*row)
-    dyd = at(work, 12*row)
-    deta = at(work, 13*row)
-    dg = at(work, 14*row)
-    ds = at(work, 15*row)
-    dh = at(work, 16*row)
+    bent_x = at(work, 5*row)
+    bent_y = at(work, 6*row)
+    bent_z = at(work, 7*row)
+    yd = at(work, 8*row)
+    eta = at(work, 9*row)
+    s = at(work, 10*row)
+    h = at(work, 11*row)
+    dqe = at(work, 12*row)
+    dve = at(work, 13*row)
+    dy = at(work, 14*row)
+    dbent_x = at(work, 15*row)
+    dbent_y = at(work, 16*row)
+    dbent_z = at(work, 17*row)
+    dyd = at(work, 18*row)
+    deta = at(work, 19*row)
+    dg = at(work, 20*row)
+    ds = at(work, 21*row)
+    dh = at(work, 22*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)
@@ -105,7 +114,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        Phi = at(X, 3*N_POSITIONS)
+        Hx = at(X, 3*N_POSITIONS)
+        Hy = at(Hx, n*padded(n))
+        Hz = at(Hy, n*padded(n))
+        Phi = at(Hz, n*padded(n))
         point = at(Phi, 3*n)
         law = at(point, 3)
         g = at(forces, element*width)
@@ -152,6 +164,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             qm = qe[k]
             y[k] = qm
+        # change of the shapes, Hx y
+        columns_times(Hx, y, bent_x, n, n)
+        # change of the shapes, Hy y
+        columns_times(Hy, y, bent_y, n, n)
+        # change of the shapes, Hz y
+        columns_times(Hz, y, bent_z, n, n)
         # displacement of the point by positions
         up_x = up_y = up_z = 0.0
         for i in range(N_POSITIONS):
@@ -163,9 +181,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            up_x += Phi_positionx_x*u_x + Phi_positiony_x*u_y + Phi_positionz_x*u_z
-            up_y += Phi_positionx_y*u_x + Phi_positiony_y*u_y + Phi_positionz_y*u_z
-            up_z += Phi_positionx_z*u_x + Phi_positiony_z*u_y + Phi_positionz_z*u_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            up_x += (u_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + u_y*(Phi_positiony_x +
+                (0.5)*bent_x_positiony) + u_z*(Phi_positionz_x + (0.5)*bent_x_positionz))
+            up_y += (u_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + u_y*(Phi_positiony_y +
+                (0.5)*bent_y_positiony) + u_z*(Phi_positionz_y + (0.5)*bent_y_positionz))
+            up_z += (u_x*(Phi_positionx_z + (0.5)*bent_z_positionx) + u_y*(Phi_positiony_z +
+                (0.5)*bent_z_positiony) + u_z*(Phi_positionz_z + (0.5)*bent_z_positionz))
         # displacement of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -176,16 +206,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            up_x += Phi_rotationx_x*psi_x + Phi_rotationy_x*psi_y + Phi_rotationz_x*psi_z
-            up_y += Phi_rotationx_y*psi_x + Phi_rotationy_y*psi_y + Phi_rotationz_y*psi_z
-            up_z += Phi_rotationx_z*psi_x + Phi_rotationy_z*psi_y + Phi_rotationz_z*psi_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            up_x += (psi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx) + psi_y*(Phi_rotationy_x +
+                (0.5)*bent_x_rotationy) + psi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+            up_y += (psi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx) + psi_y*(Phi_rotationy_y +
+                (0.5)*bent_y_rotationy) + psi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+            up_z += (psi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx) + psi_y*(Phi_rotationy_z +
+                (0.5)*bent_z_rotationy) + psi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
         # displacement of the point by modes
         for k in range(MODES, n):
             ym = y[k]
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            up_x += Phi_mode_x*ym
-            up_y += Phi_mode_y*ym
-            up_z += Phi_mode_z*ym
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            up_x += ym*(Phi_mode_x + (0.5)*bent_x_mode)
+            up_y += ym*(Phi_mode_y + (0.5)*bent_y_mode)
+            up_z += ym*(Phi_mode_z + (0.5)*bent_z_mode)
         # arm of the point in the frame
         Xp_x, Xp_y, Xp_z = point[0], point[1], point[2]
         rp_x = Xp_x + up_x
@@ -304,10 +349,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
             eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
-            upd_x += Phi_positionx_x*eu_x + Phi_positiony_x*eu_y + Phi_positionz_x*eu_z
-            upd_y += Phi_positionx_y*eu_x + Phi_positiony_y*eu_y + Phi_positionz_y*eu_z
-            upd_z += Phi_positionx_z*eu_x + Phi_positiony_z*eu_y + Phi_positionz_z*eu_z
+            upd_x += (eu_x*(Phi_positionx_x + bent_x_positionx) + eu_y*(Phi_positiony_x +
+                bent_x_positiony) + eu_z*(Phi_positionz_x + bent_x_positionz))
+            upd_y += (eu_x*(Phi_positionx_y + bent_y_positionx) + eu_y*(Phi_positiony_y +
+                bent_y_positiony) + eu_z*(Phi_positionz_y + bent_y_positionz))
+            upd_z += (eu_x*(Phi_positionx_z + bent_z_positionx) + eu_y*(Phi_positiony_z +
+                bent_z_positiony) + eu_z*(Phi_positionz_z + bent_z_positionz))
         # rate of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -317,17 +374,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
             ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
-            upd_x += Phi_rotationx_x*ep_x + Phi_rotationy_x*ep_y + Phi_rotationz_x*ep_z
-            upd_y += Phi_rotationx_y*ep_x + Phi_rotationy_y*ep_y + Phi_rotationz_y*ep_z
-            upd_z += Phi_rotationx_z*ep_x + Phi_rotationy_z*ep_y + Phi_rotationz_z*ep_z
+            upd_x += (ep_x*(Phi_rotationx_x + bent_x_rotationx) + ep_y*(Phi_rotationy_x +
+                bent_x_rotationy) + ep_z*(Phi_rotationz_x + bent_x_rotationz))
+            upd_y += (ep_x*(Phi_rotationx_y + bent_y_rotationx) + ep_y*(Phi_rotationy_y +
+                bent_y_rotationy) + ep_z*(Phi_rotationz_y + bent_y_rotationz))
+            upd_z += (ep_x*(Phi_rotationx_z + bent_z_rotationx) + ep_y*(Phi_rotationy_z +
+                bent_z_rotationy) + ep_z*(Phi_rotationz_z + bent_z_rotationz))
         # rate of the point by modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
             em = eta[k]
-            upd_x += Phi_mode_x*em
-            upd_y += Phi_mode_y*em
-            upd_z += Phi_mode_z*em
+            upd_x += em*(Phi_mode_x + bent_x_mode)
+            upd_y += em*(Phi_mode_y + bent_y_mode)
+            upd_z += em*(Phi_mode_z + bent_z_mode)
         # velocity of the point
         t28 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
         t29 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
@@ -561,9 +633,21 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
             Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                 Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-            s[i3] = Phi_positionx_x*fp_x + Phi_positionx_y*fp_y + Phi_positionx_z*fp_z
-            s[i3 + 1] = Phi_positiony_x*fp_x + Phi_positiony_y*fp_y + Phi_positiony_z*fp_z
-            s[i3 + 2] = Phi_positionz_x*fp_x + Phi_positionz_y*fp_y + Phi_positionz_z*fp_z
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_z_positionx = bent_z[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            bent_z_positiony = bent_z[i3 + 1]
+            bent_x_positionz = bent_x[i3 + 2]
+            bent_y_positionz = bent_y[i3 + 2]
+            bent_z_positionz = bent_z[i3 + 2]
+            s[i3] = (fp_x*(Phi_positionx_x + bent_x_positionx) + fp_y*(Phi_positionx_y +
+                bent_y_positionx) + fp_z*(Phi_positionx_z + bent_z_positionx))
+            s[i3 + 1] = (fp_x*(Phi_positiony_x + bent_x_positiony) + fp_y*(Phi_positiony_y +
+                bent_y_positiony) + fp_z*(Phi_positiony_z + bent_z_positiony))
+            s[i3 + 2] = (fp_x*(Phi_positionz_x + bent_x_positionz) + fp_y*(Phi_positionz_y +
+                bent_y_positionz) + fp_z*(Phi_positionz_z + bent_z_positionz))
         # forces conjugate to the local coordinates: rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + 3*j
@@ -573,13 +657,29 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
             Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                 Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-            s[j3] = Phi_rotationx_x*fp_x + Phi_rotationx_y*fp_y + Phi_rotationx_z*fp_z
-            s[j3 + 1] = Phi_rotationy_x*fp_x + Phi_rotationy_y*fp_y + Phi_rotationy_z*fp_z
-            s[j3 + 2] = Phi_rotationz_x*fp_x + Phi_rotationz_y*fp_y + Phi_rotationz_z*fp_z
+            bent_x_rotationx = bent_x[j3]
+            bent_y_rotationx = bent_y[j3]
+            bent_z_rotationx = bent_z[j3]
+            bent_x_rotationy = bent_x[j3 + 1]
+            bent_y_rotationy = bent_y[j3 + 1]
+            bent_z_rotationy = bent_z[j3 + 1]
+            bent_x_rotationz = bent_x[j3 + 2]
+            bent_y_rotationz = bent_y[j3 + 2]
+            bent_z_rotationz = bent_z[j3 + 2]
+            s[j3] = (fp_x*(Phi_rotationx_x + bent_x_rotationx) + fp_y*(Phi_rotationx_y +
+                bent_y_rotationx) + fp_z*(Phi_rotationx_z + bent_z_rotationx))
+            s[j3 + 1] = (fp_x*(Phi_rotationy_x + bent_x_rotationy) + fp_y*(Phi_rotationy_y +
+                bent_y_rotationy) + fp_z*(Phi_rotationy_z + bent_z_rotationy))
+            s[j3 + 2] = (fp_x*(Phi_rotationz_x + bent_x_rotationz) + fp_y*(Phi_rotationz_y +
+                bent_y_rotationz) + fp_z*(Phi_rotationz_z + bent_z_rotationz))
         # forces conjugate to the local coordinates: modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-            s[k] = Phi_mode_x*fp_x + Phi_mode_y*fp_y + Phi_mode_z*fp_z
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            bent_z_mode = bent_z[k]
+            s[k] = (fp_x*(Phi_mode_x + bent_x_mode) + fp_y*(Phi_mode_y + bent_y_mode) +
+                fp_z*(Phi_mode_z + bent_z_mode))
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = F_z = 0.0
         W_x = W_y = W_z = 0.0
@@ -1102,43 +1202,116 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # differential: change of the shapes, Hx y
+                columns_times(Hx, dy, dbent_x, n, n)
+                # differential: change of the shapes, Hy y
+                columns_times(Hy, dy, dbent_y, n, n)
+                # differential: change of the shapes, Hz y
+                columns_times(Hz, dy, dbent_z, n, n)
                 # differential: displacement of the point by positions
                 dup_x = dup_y = dup_z = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 3*i
+                    u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     Phi_positionx_x, Phi_positionx_y, Phi_positionx_z = (Phi[3*i3], Phi[3*i3 + 1],
                         Phi[3*i3 + 2])
                     Phi_positiony_x, Phi_positiony_y, Phi_positiony_z = (Phi[3*(i3 + 1)],
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    dup_x += Phi_positionx_x*du_x + Phi_positiony_x*du_y + Phi_positionz_x*du_z
-                    dup_y += Phi_positionx_y*du_x + Phi_positiony_y*du_y + Phi_positionz_y*du_z
-                    dup_z += Phi_positionx_z*du_x + Phi_positiony_z*du_y + Phi_positionz_z*du_z
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    t277 = (0.5)*u_x
+                    t278 = (0.5)*u_y
+                    t279 = (0.5)*u_z
+                    dup_x += (dbent_x_positionx*t277 + dbent_x_positiony*t278 +
+                        dbent_x_positionz*t279 + du_x*(Phi_positionx_x + (0.5)*bent_x_positionx) +
+                        du_y*(Phi_positiony_x + (0.5)*bent_x_positiony) + du_z*(Phi_positionz_x +
+                        (0.5)*bent_x_positionz))
+                    dup_y += (dbent_y_positionx*t277 + dbent_y_positiony*t278 +
+                        dbent_y_positionz*t279 + du_x*(Phi_positionx_y + (0.5)*bent_y_positionx) +
+                        du_y*(Phi_positiony_y + (0.5)*bent_y_positiony) + du_z*(Phi_positionz_y +
+                        (0.5)*bent_y_positionz))
+                    dup_z += (dbent_z_positionx*t277 + dbent_z_positiony*t278 +
+                        dbent_z_positionz*t279 + du_x*(Phi_positionx_z + (0.5)*bent_z_positionx) +
+                        du_y*(Phi_positiony_z + (0.5)*bent_z_positiony) + du_z*(Phi_positionz_z +
+                        (0.5)*bent_z_positionz))
                 # differential: displacement of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
+                    psi_x, psi_y, psi_z = y[j3], y[j3 + 1], y[j3 + 2]
                     Phi_rotationx_x, Phi_rotationx_y, Phi_rotationx_z = (Phi[3*j3], Phi[3*j3 + 1],
                         Phi[3*j3 + 2])
                     Phi_rotationy_x, Phi_rotationy_y, Phi_rotationy_z = (Phi[3*(j3 + 1)],
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
-                    dup_x += (Phi_rotationx_x*dpsi_x + Phi_rotationy_x*dpsi_y +
-                        Phi_rotationz_x*dpsi_z)
-                    dup_y += (Phi_rotationx_y*dpsi_x + Phi_rotationy_y*dpsi_y +
-                        Phi_rotationz_y*dpsi_z)
-                    dup_z += (Phi_rotationx_z*dpsi_x + Phi_rotationy_z*dpsi_y +
-                        Phi_rotationz_z*dpsi_z)
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    t280 = (0.5)*psi_x
+                    t281 = (0.5)*psi_y
+                    t282 = (0.5)*psi_z
+                    dup_x += (dbent_x_rotationx*t280 + dbent_x_rotationy*t281 +
+                        dbent_x_rotationz*t282 + dpsi_x*(Phi_rotationx_x + (0.5)*bent_x_rotationx)
+                        + dpsi_y*(Phi_rotationy_x + (0.5)*bent_x_rotationy) +
+                        dpsi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz))
+                    dup_y += (dbent_y_rotationx*t280 + dbent_y_rotationy*t281 +
+                        dbent_y_rotationz*t282 + dpsi_x*(Phi_rotationx_y + (0.5)*bent_y_rotationx)
+                        + dpsi_y*(Phi_rotationy_y + (0.5)*bent_y_rotationy) +
+                        dpsi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz))
+                    dup_z += (dbent_z_rotationx*t280 + dbent_z_rotationy*t281 +
+                        dbent_z_rotationz*t282 + dpsi_x*(Phi_rotationx_z + (0.5)*bent_z_rotationx)
+                        + dpsi_y*(Phi_rotationy_z + (0.5)*bent_z_rotationy) +
+                        dpsi_z*(Phi_rotationz_z + (0.5)*bent_z_rotationz))
                 # differential: displacement of the point by modes
                 for k in range(MODES, n):
+                    ym = y[k]
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
                     dym = dy[k]
-                    dup_x += Phi_mode_x*dym
-                    dup_y += Phi_mode_y*dym
-                    dup_z += Phi_mode_z*dym
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    t283 = (0.5)*ym
+                    dup_x += dbent_x_mode*t283 + dym*(Phi_mode_x + (0.5)*bent_x_mode)
+                    dup_y += dbent_y_mode*t283 + dym*(Phi_mode_y + (0.5)*bent_y_mode)
+                    dup_z += dbent_z_mode*t283 + dym*(Phi_mode_z + (0.5)*bent_z_mode)
                 # differential: arm of the point in the frame
                 drp_x = dup_x
                 drp_y = dup_y
@@ -1178,12 +1351,12 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t277 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
-                    t278 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
-                    t279 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
-                    rhs_x += -fit*(X_y*t277 - X_z*t278)
-                    rhs_y += -fit*(-X_x*t277 + X_z*t279)
-                    rhs_z += -fit*(X_x*t278 - X_y*t279)
+                    t284 = -Om0_x*du_y + Om0_y*du_x - dv0_z + dvs_z
+                    t285 = Om0_x*du_z - Om0_z*du_x - dv0_y + dvs_y
+                    t286 = -Om0_y*du_z + Om0_z*du_y - dv0_x + dvs_x
+                    rhs_x += -fit*(X_y*t284 - X_z*t285)
+                    rhs_y += -fit*(-X_x*t284 + X_z*t286)
+                    rhs_z += -fit*(X_x*t285 - X_y*t286)
                 dOm0_x = Bxx*rhs_x + Bxy*rhs_y + Bxz*rhs_z
                 dOm0_y = Byx*rhs_x + Byy*rhs_y + Byz*rhs_z
                 dOm0_z = Bzx*rhs_x + Bzy*rhs_y + Bzz*rhs_z
@@ -1203,13 +1376,13 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     u_x, u_y, u_z = y[i3], y[i3 + 1], y[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     dvs_x, dvs_y, dvs_z = dyd[i3], dyd[i3 + 1], dyd[i3 + 2]
-                    t280 = X_y + u_y
-                    t281 = X_z + u_z
-                    t282 = X_x + u_x
-                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t281 + dOm0_z*t280 - dv0_x + dvs_x
-                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t281 - dOm0_z*t282 - dv0_y +
+                    t287 = X_y + u_y
+                    t288 = X_z + u_z
+                    t289 = X_x + u_x
+                    deta[i3] = -Om0_y*du_z + Om0_z*du_y - dOm0_y*t288 + dOm0_z*t287 - dv0_x + dvs_x
+                    deta[i3 + 1] = (Om0_x*du_z - Om0_z*du_x + dOm0_x*t288 - dOm0_z*t289 - dv0_y +
                         dvs_y)
-                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t280 + dOm0_y*t282 - dv0_z +
+                    deta[i3 + 2] = (-Om0_x*du_y + Om0_y*du_x - dOm0_x*t287 + dOm0_y*t289 - dv0_z +
                         dvs_z)
                 # differential: rates of the elastic rotations
                 for j in range(N_ROTATIONS):
@@ -1220,36 +1393,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dpsi_x, dpsi_y, dpsi_z = dy[j3], dy[j3 + 1], dy[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t283 = (0.5)*Om0_z + (0.5)*Om_z
-                    t284 = Om0_y + Om_y
-                    t285 = (0.5)*dpsi_z
-                    t286 = (0.5)*dOm0_z + (0.5)*dOm_z
-                    t287 = dOm0_y + dOm_y
-                    t288 = (0.5)*psi_z
-                    t289 = -Om0_y + Om_y
-                    t290 = -Om0_x + Om_x
-                    t291 = psi_x*t289 - psi_y*t290
-                    t292 = -Om0_z + Om_z
-                    t293 = -psi_x*t292 + psi_z*t290
-                    t294 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t295 = -dOm0_y + dOm_y
-                    t296 = -dOm0_x + dOm_x
-                    t297 = dpsi_x*t289 - dpsi_y*t290 + psi_x*t295 - psi_y*t296
-                    t298 = -dOm0_z + dOm_z
-                    t299 = -dpsi_x*t292 + dpsi_z*t290 - psi_x*t298 + psi_z*t296
-                    t300 = Om0_x + Om_x
-                    t301 = dOm0_x + dOm_x
-                    t302 = psi_y*t292 - psi_z*t289
-                    t303 = dpsi_y*t292 - dpsi_z*t289 + psi_y*t298 - psi_z*t295
-                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t283 + e0*(dpsi_y*t291 - dpsi_z*t293 +
-                        psi_y*t297 - psi_z*t299) + psi_y*t286 - t284*t285 - t287*t288 +
-                        t294*(psi_y*t291 - psi_z*t293))
-                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t283 + e0*(-dpsi_x*t291 + dpsi_z*t302
-                        - psi_x*t297 + psi_z*t303) - psi_x*t286 + t285*t300 + t288*t301 +
-                        t294*(-psi_x*t291 + psi_z*t302))
-                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t284 - 0.5*dpsi_y*t300 +
-                        e0*(dpsi_x*t293 - dpsi_y*t302 + psi_x*t299 - psi_y*t303) +
-                        (0.5)*psi_x*t287 - 0.5*psi_y*t301 + t294*(psi_x*t293 - psi_y*t302))
+                    t290 = (0.5)*Om0_z + (0.5)*Om_z
+                    t291 = Om0_y + Om_y
+                    t292 = (0.5)*dpsi_z
+                    t293 = (0.5)*dOm0_z + (0.5)*dOm_z
+                    t294 = dOm0_y + dOm_y
+                    t295 = (0.5)*psi_z
+                    t296 = -Om0_y + Om_y
+                    t297 = -Om0_x + Om_x
+                    t298 = psi_x*t296 - psi_y*t297
+                    t299 = -Om0_z + Om_z
+                    t300 = -psi_x*t299 + psi_z*t297
+                    t301 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t302 = -dOm0_y + dOm_y
+                    t303 = -dOm0_x + dOm_x
+                    t304 = dpsi_x*t296 - dpsi_y*t297 + psi_x*t302 - psi_y*t303
+                    t305 = -dOm0_z + dOm_z
+                    t306 = -dpsi_x*t299 + dpsi_z*t297 - psi_x*t305 + psi_z*t303
+                    t307 = Om0_x + Om_x
+                    t308 = dOm0_x + dOm_x
+                    t309 = psi_y*t299 - psi_z*t296
+                    t310 = dpsi_y*t299 - dpsi_z*t296 + psi_y*t305 - psi_z*t302
+                    deta[j3] = (-dOm0_x + dOm_x + dpsi_y*t290 + e0*(dpsi_y*t298 - dpsi_z*t300 +
+                        psi_y*t304 - psi_z*t306) + psi_y*t293 - t291*t292 - t294*t295 +
+                        t301*(psi_y*t298 - psi_z*t300))
+                    deta[j3 + 1] = (-dOm0_y + dOm_y - dpsi_x*t290 + e0*(-dpsi_x*t298 + dpsi_z*t309
+                        - psi_x*t304 + psi_z*t310) - psi_x*t293 + t292*t307 + t295*t308 +
+                        t301*(-psi_x*t298 + psi_z*t309))
+                    deta[j3 + 2] = (-dOm0_z + dOm_z + (0.5)*dpsi_x*t291 - 0.5*dpsi_y*t307 +
+                        e0*(dpsi_x*t300 - dpsi_y*t309 + psi_x*t306 - psi_y*t310) +
+                        (0.5)*psi_x*t294 - 0.5*psi_y*t308 + t301*(psi_x*t300 - psi_y*t309))
                 # differential: rates of the internal modes
                 for k in range(MODES, n):
                     dvm = dve[k]
@@ -1264,10 +1437,38 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    eu_x, eu_y, eu_z = eta[i3], eta[i3 + 1], eta[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
                     deu_x, deu_y, deu_z = deta[i3], deta[i3 + 1], deta[i3 + 2]
-                    dupd_x += Phi_positionx_x*deu_x + Phi_positiony_x*deu_y + Phi_positionz_x*deu_z
-                    dupd_y += Phi_positionx_y*deu_x + Phi_positiony_y*deu_y + Phi_positionz_y*deu_z
-                    dupd_z += Phi_positionx_z*deu_x + Phi_positiony_z*deu_y + Phi_positionz_z*deu_z
+                    dupd_x += (dbent_x_positionx*eu_x + dbent_x_positiony*eu_y +
+                        dbent_x_positionz*eu_z + deu_x*(Phi_positionx_x + bent_x_positionx) +
+                        deu_y*(Phi_positiony_x + bent_x_positiony) + deu_z*(Phi_positionz_x +
+                        bent_x_positionz))
+                    dupd_y += (dbent_y_positionx*eu_x + dbent_y_positiony*eu_y +
+                        dbent_y_positionz*eu_z + deu_x*(Phi_positionx_y + bent_y_positionx) +
+                        deu_y*(Phi_positiony_y + bent_y_positiony) + deu_z*(Phi_positionz_y +
+                        bent_y_positionz))
+                    dupd_z += (dbent_z_positionx*eu_x + dbent_z_positiony*eu_y +
+                        dbent_z_positionz*eu_z + deu_x*(Phi_positionx_z + bent_z_positionx) +
+                        deu_y*(Phi_positiony_z + bent_z_positiony) + deu_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: rate of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1277,30 +1478,65 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    ep_x, ep_y, ep_z = eta[j3], eta[j3 + 1], eta[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
                     dep_x, dep_y, dep_z = deta[j3], deta[j3 + 1], deta[j3 + 2]
-                    dupd_x += Phi_rotationx_x*dep_x + Phi_rotationy_x*dep_y + Phi_rotationz_x*dep_z
-                    dupd_y += Phi_rotationx_y*dep_x + Phi_rotationy_y*dep_y + Phi_rotationz_y*dep_z
-                    dupd_z += Phi_rotationx_z*dep_x + Phi_rotationy_z*dep_y + Phi_rotationz_z*dep_z
+                    dupd_x += (dbent_x_rotationx*ep_x + dbent_x_rotationy*ep_y +
+                        dbent_x_rotationz*ep_z + dep_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dep_y*(Phi_rotationy_x + bent_x_rotationy) + dep_z*(Phi_rotationz_x +
+                        bent_x_rotationz))
+                    dupd_y += (dbent_y_rotationx*ep_x + dbent_y_rotationy*ep_y +
+                        dbent_y_rotationz*ep_z + dep_x*(Phi_rotationx_y + bent_y_rotationx) +
+                        dep_y*(Phi_rotationy_y + bent_y_rotationy) + dep_z*(Phi_rotationz_y +
+                        bent_y_rotationz))
+                    dupd_z += (dbent_z_rotationx*ep_x + dbent_z_rotationy*ep_y +
+                        dbent_z_rotationz*ep_z + dep_x*(Phi_rotationx_z + bent_z_rotationx) +
+                        dep_y*(Phi_rotationy_z + bent_z_rotationy) + dep_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: rate of the point by modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    em = eta[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
                     dem = deta[k]
-                    dupd_x += Phi_mode_x*dem
-                    dupd_y += Phi_mode_y*dem
-                    dupd_z += Phi_mode_z*dem
+                    dupd_x += dbent_x_mode*em + dem*(Phi_mode_x + bent_x_mode)
+                    dupd_y += dbent_y_mode*em + dem*(Phi_mode_y + bent_y_mode)
+                    dupd_z += dbent_z_mode*em + dem*(Phi_mode_z + bent_z_mode)
                 # differential: velocity of the point
-                t304 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
-                t305 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
-                t306 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
-                t307 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
-                t308 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
-                t309 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
-                dva_x = (R0_xx*t304 + R0_xy*t305 + R0_xz*t306 + t307*(R0_xx*dth0_y - R0_xy*dth0_x)
-                    + t308*(-R0_xx*dth0_z + R0_xz*dth0_x) + t309*(R0_xy*dth0_z - R0_xz*dth0_y))
-                dva_y = (R0_yx*t304 + R0_yy*t305 + R0_yz*t306 + t307*(R0_yx*dth0_y - R0_yy*dth0_x)
-                    + t308*(-R0_yx*dth0_z + R0_yz*dth0_x) + t309*(R0_yy*dth0_z - R0_yz*dth0_y))
-                dva_z = (R0_zx*t304 + R0_zy*t305 + R0_zz*t306 + t307*(R0_zx*dth0_y - R0_zy*dth0_x)
-                    + t308*(-R0_zx*dth0_z + R0_zz*dth0_x) + t309*(R0_zy*dth0_z - R0_zz*dth0_y))
+                t311 = Om0_y*drp_z - Om0_z*drp_y + dOm0_y*rp_z - dOm0_z*rp_y + dupd_x + dv0_x
+                t312 = -Om0_x*drp_z + Om0_z*drp_x - dOm0_x*rp_z + dOm0_z*rp_x + dupd_y + dv0_y
+                t313 = Om0_x*drp_y - Om0_y*drp_x + dOm0_x*rp_y - dOm0_y*rp_x + dupd_z + dv0_z
+                t314 = Om0_x*rp_y - Om0_y*rp_x + upd_z + v0_z
+                t315 = -Om0_x*rp_z + Om0_z*rp_x + upd_y + v0_y
+                t316 = Om0_y*rp_z - Om0_z*rp_y + upd_x + v0_x
+                dva_x = (R0_xx*t311 + R0_xy*t312 + R0_xz*t313 + t314*(R0_xx*dth0_y - R0_xy*dth0_x)
+                    + t315*(-R0_xx*dth0_z + R0_xz*dth0_x) + t316*(R0_xy*dth0_z - R0_xz*dth0_y))
+                dva_y = (R0_yx*t311 + R0_yy*t312 + R0_yz*t313 + t314*(R0_yx*dth0_y - R0_yy*dth0_x)
+                    + t315*(-R0_yx*dth0_z + R0_yz*dth0_x) + t316*(R0_yy*dth0_z - R0_yz*dth0_y))
+                dva_z = (R0_zx*t311 + R0_zy*t312 + R0_zz*t313 + t314*(R0_zx*dth0_y - R0_zy*dth0_x)
+                    + t315*(-R0_zx*dth0_z + R0_zz*dth0_x) + t316*(R0_zy*dth0_z - R0_zz*dth0_y))
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dxb_z = dqe[n + 2]
@@ -1313,139 +1549,139 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 uthb_x = dve[n + 3]
                 uthb_y = dve[n + 4]
                 uthb_z = dve[n + 5]
-                t310 = dxa_x - dxb_x
-                t311 = dxa_y - dxb_y
-                t312 = dxa_z - dxb_z
-                t313 = xa_x - xb_x
-                t314 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t315 = xa_y - xb_y
-                t316 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t317 = xa_z - xb_z
-                t318 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t319 = Rb_xx*t310 + Rb_yx*t311 + Rb_zx*t312 + t313*t314 + t315*t316 + t317*t318
-                t320 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t321 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t322 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t323 = Rb_xy*t310 + Rb_yy*t311 + Rb_zy*t312 + t313*t320 + t315*t321 + t317*t322
-                t324 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t325 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t326 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t327 = Rb_xz*t310 + Rb_yz*t311 + Rb_zz*t312 + t313*t324 + t315*t325 + t317*t326
-                t328 = va_x - vb_x
-                t329 = va_y - vb_y
-                t330 = va_z - vb_z
-                t331 = dva_x - uxb_x
-                t332 = dva_y - uxb_y
-                t333 = dva_z - uxb_z
-                t334 = Rb_xy*t313 + Rb_yy*t315 + Rb_zy*t317
-                t335 = Rb_xz*t313 + Rb_yz*t315 + Rb_zz*t317
-                t336 = Rb_xx*t313 + Rb_yx*t315 + Rb_zx*t317
-                dplace_1 = t319
-                dplace_2 = t323
-                dplace_3 = t327
-                drate_1 = -Omb_y*t327 + Omb_z*t323 + t314*t328 + t316*t329 + t318*t330
-                urate_1 = Rb_xx*t331 + Rb_yx*t332 + Rb_zx*t333 + t334*uthb_z - t335*uthb_y
-                drate_2 = Omb_x*t327 - Omb_z*t319 + t320*t328 + t321*t329 + t322*t330
-                urate_2 = Rb_xy*t331 + Rb_yy*t332 + Rb_zy*t333 + t335*uthb_x - t336*uthb_z
-                drate_3 = -Omb_x*t323 + Omb_y*t319 + t324*t328 + t325*t329 + t326*t330
-                urate_3 = Rb_xz*t331 + Rb_yz*t332 + Rb_zz*t333 - t334*uthb_x + t336*uthb_y
-                t337 = Rb_xx*dthb_y - Rb_xy*dthb_x
-                t338 = normal_1*normal_3
-                t339 = normal_2*normal_3
-                t340 = 1 - normal_3*normal_3
-                t341 = -friction_1*t338 - friction_2*t339 + friction_3*t340 - normal_3*push
-                t342 = -Rb_xx*dthb_z + Rb_xz*dthb_x
-                t343 = normal_1*normal_2
-                t344 = friction_3*normal_3
-                t345 = 1 - normal_2*normal_2
-                t346 = -friction_1*t343 + friction_2*t345 - normal_2*push - normal_2*t344
-                t347 = Rb_xy*dthb_z - Rb_xz*dthb_y
-                t348 = 1 - normal_1*normal_1
-                t349 = friction_1*t348 - friction_2*t343 - friction_3*t338 - normal_1*push
-                t350 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
-                t351 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
+                t317 = dxa_x - dxb_x
+                t318 = dxa_y - dxb_y
+                t319 = dxa_z - dxb_z
+                t320 = xa_x - xb_x
+                t321 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t322 = xa_y - xb_y
+                t323 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t324 = xa_z - xb_z
+                t325 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t326 = Rb_xx*t317 + Rb_yx*t318 + Rb_zx*t319 + t320*t321 + t322*t323 + t324*t325
+                t327 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t328 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t329 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t330 = Rb_xy*t317 + Rb_yy*t318 + Rb_zy*t319 + t320*t327 + t322*t328 + t324*t329
+                t331 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t332 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t333 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t334 = Rb_xz*t317 + Rb_yz*t318 + Rb_zz*t319 + t320*t331 + t322*t332 + t324*t333
+                t335 = va_x - vb_x
+                t336 = va_y - vb_y
+                t337 = va_z - vb_z
+                t338 = dva_x - uxb_x
+                t339 = dva_y - uxb_y
+                t340 = dva_z - uxb_z
+                t341 = Rb_xy*t320 + Rb_yy*t322 + Rb_zy*t324
+                t342 = Rb_xz*t320 + Rb_yz*t322 + Rb_zz*t324
+                t343 = Rb_xx*t320 + Rb_yx*t322 + Rb_zx*t324
+                dplace_1 = t326
+                dplace_2 = t330
+                dplace_3 = t334
+                drate_1 = -Omb_y*t334 + Omb_z*t330 + t321*t335 + t323*t336 + t325*t337
+                urate_1 = Rb_xx*t338 + Rb_yx*t339 + Rb_zx*t340 + t341*uthb_z - t342*uthb_y
+                drate_2 = Omb_x*t334 - Omb_z*t326 + t327*t335 + t328*t336 + t329*t337
+                urate_2 = Rb_xy*t338 + Rb_yy*t339 + Rb_zy*t340 + t342*uthb_x - t343*uthb_z
+                drate_3 = -Omb_x*t330 + Omb_y*t326 + t331*t335 + t332*t336 + t333*t337
+                urate_3 = Rb_xz*t338 + Rb_yz*t339 + Rb_zz*t340 - t341*uthb_x + t343*uthb_y
+                t344 = Rb_xx*dthb_y - Rb_xy*dthb_x
+                t345 = normal_1*normal_3
+                t346 = normal_2*normal_3
+                t347 = 1 - normal_3*normal_3
+                t348 = -friction_1*t345 - friction_2*t346 + friction_3*t347 - normal_3*push
+                t349 = -Rb_xx*dthb_z + Rb_xz*dthb_x
+                t350 = normal_1*normal_2
+                t351 = friction_3*normal_3
+                t352 = 1 - normal_2*normal_2
+                t353 = -friction_1*t350 + friction_2*t352 - normal_2*push - normal_2*t351
+                t354 = Rb_xy*dthb_z - Rb_xz*dthb_y
+                t355 = 1 - normal_1*normal_1
+                t356 = friction_1*t355 - friction_2*t350 - friction_3*t345 - normal_1*push
+                t357 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2 + dpush_by_rate_3*urate_3
+                t358 = (dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2 +
                     dfriction_2_by_rate_3*urate_3)
-                t352 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
+                t359 = (dfriction_3_by_rate_1*urate_1 + dfriction_3_by_rate_2*urate_2 +
                     dfriction_3_by_rate_3*urate_3)
-                t353 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
+                t360 = (dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2 +
                     dfriction_1_by_rate_3*urate_3)
-                t354 = -normal_1*t350 - t338*t352 - t343*t351 + t348*t353
-                t355 = -normal_2*t350 - t339*t352 - t343*t353 + t345*t351
-                t356 = -normal_3*t350 - t338*t353 - t339*t351 + t340*t352
-                t357 = dnormal_1_by_place_1*dplace_1
-                t358 = dnormal_1_by_place_2*dplace_2
-                t359 = dnormal_1_by_place_3*dplace_3
-                t360 = t357 + t358 + t359
-                t361 = dnormal_2_by_place_1*dplace_1
-                t362 = dnormal_2_by_place_2*dplace_2
-                t363 = dnormal_2_by_place_3*dplace_3
-                t364 = t361 + t362 + t363
-                t365 = friction_2*t364
-                t366 = normal_2*t360
-                t367 = dnormal_3_by_place_1*dplace_1
-                t368 = dnormal_3_by_place_2*dplace_2
-                t369 = dnormal_3_by_place_3*dplace_3
-                t370 = t367 + t368 + t369
-                t371 = friction_3*t370
-                t372 = friction_1*normal_1
-                t373 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t361 = -normal_1*t357 - t345*t359 - t350*t358 + t355*t360
+                t362 = -normal_2*t357 - t346*t359 - t350*t360 + t352*t358
+                t363 = -normal_3*t357 - t345*t360 - t346*t358 + t347*t359
+                t364 = dnormal_1_by_place_1*dplace_1
+                t365 = dnormal_1_by_place_2*dplace_2
+                t366 = dnormal_1_by_place_3*dplace_3
+                t367 = t364 + t365 + t366
+                t368 = dnormal_2_by_place_1*dplace_1
+                t369 = dnormal_2_by_place_2*dplace_2
+                t370 = dnormal_2_by_place_3*dplace_3
+                t371 = t368 + t369 + t370
+                t372 = friction_2*t371
+                t373 = normal_2*t367
+                t374 = dnormal_3_by_place_1*dplace_1
+                t375 = dnormal_3_by_place_2*dplace_2
+                t376 = dnormal_3_by_place_3*dplace_3
+                t377 = t374 + t375 + t376
+                t378 = friction_3*t377
+                t379 = friction_1*normal_1
+                t380 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dplace_3*dpush_by_place_3 + dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2
                     + dpush_by_rate_3*drate_3)
-                t374 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t381 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_place_3*dplace_3 + dfriction_2_by_rate_1*drate_1 +
                     dfriction_2_by_rate_2*drate_2 + dfriction_2_by_rate_3*drate_3)
-                t375 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
+                t382 = (dfriction_3_by_place_1*dplace_1 + dfriction_3_by_place_2*dplace_2 +
                     dfriction_3_by_place_3*dplace_3 + dfriction_3_by_rate_1*drate_1 +
                     dfriction_3_by_rate_2*drate_2 + dfriction_3_by_rate_3*drate_3)
-                t376 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t383 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_place_3*dplace_3 + dfriction_1_by_rate_1*drate_1 +
                     dfriction_1_by_rate_2*drate_2 + dfriction_1_by_rate_3*drate_3)
-                t377 = (-friction_2*t366 - normal_1*t365 - normal_1*t371 - normal_1*t373 -
-                    push*t360 - t338*t375 - t343*t374 - t344*t360 + t348*t376 - t372*(2*t357 +
-                    2*t358 + 2*t359))
-                t378 = friction_2*normal_2
-                t379 = (-friction_1*t366 - normal_2*t371 - normal_2*t373 - push*t364 - t339*t375 -
-                    t343*t376 - t344*t364 + t345*t374 - t364*t372 - t378*(2*t361 + 2*t362 +
-                    2*t363))
-                t380 = (-friction_1*normal_3*t360 - normal_3*t365 - normal_3*t373 - push*t370 -
-                    t338*t376 - t339*t374 + t340*t375 - t344*(2*t367 + 2*t368 + 2*t369) -
-                    t370*t372 - t370*t378)
-                t381 = (Rb_xx*t354 + Rb_xx*t377 + Rb_xy*t355 + Rb_xy*t379 + Rb_xz*t356 +
-                    Rb_xz*t380 + t337*t341 + t342*t346 + t347*t349)
-                t382 = Rb_yx*dthb_y - Rb_yy*dthb_x
-                t383 = -Rb_yx*dthb_z + Rb_yz*dthb_x
-                t384 = Rb_yy*dthb_z - Rb_yz*dthb_y
-                t385 = (Rb_yx*t354 + Rb_yx*t377 + Rb_yy*t355 + Rb_yy*t379 + Rb_yz*t356 +
-                    Rb_yz*t380 + t341*t382 + t346*t383 + t349*t384)
-                t386 = Rb_zx*dthb_y - Rb_zy*dthb_x
-                t387 = -Rb_zx*dthb_z + Rb_zz*dthb_x
-                t388 = Rb_zy*dthb_z - Rb_zz*dthb_y
-                t389 = (Rb_zx*t354 + Rb_zx*t377 + Rb_zy*t355 + Rb_zy*t379 + Rb_zz*t356 +
-                    Rb_zz*t380 + t341*t386 + t346*t387 + t349*t388)
-                t390 = xa_x - xb_x
-                t391 = xa_y - xb_y
-                t392 = xa_z - xb_z
-                t393 = Rb_xz*t390 + Rb_yz*t391 + Rb_zz*t392
-                t394 = Rb_xy*t390 + Rb_yy*t391 + Rb_zy*t392
-                t395 = -t394
-                t396 = dxa_x - dxb_x
-                t397 = dxa_y - dxb_y
-                t398 = dxa_z - dxb_z
-                t399 = Rb_xz*t396 + Rb_yz*t397 + Rb_zz*t398 + t337*t390 + t382*t391 + t386*t392
-                t400 = Rb_xy*t396 + Rb_yy*t397 + Rb_zy*t398 + t342*t390 + t383*t391 + t387*t392
-                t401 = Rb_xx*t390 + Rb_yx*t391 + Rb_zx*t392
-                t402 = -t393
-                t403 = Rb_xx*t396 + Rb_yx*t397 + Rb_zx*t398 + t347*t390 + t384*t391 + t388*t392
-                t404 = -t401
-                dFp_x = t381
-                dFp_y = t385
-                dFp_z = t389
-                dg[n] = -t381
-                dg[n + 1] = -t385
-                dg[n + 2] = -t389
-                dg[n + 3] = -t341*t400 + t346*t399 + t355*t393 + t356*t395 + t379*t393 + t380*t395
-                dg[n + 4] = t341*t403 - t349*t399 + t354*t402 + t356*t401 + t377*t402 + t380*t401
-                dg[n + 5] = -t346*t403 + t349*t400 + t354*t394 + t355*t404 + t377*t394 + t379*t404
+                t384 = (-friction_2*t373 - normal_1*t372 - normal_1*t378 - normal_1*t380 -
+                    push*t367 - t345*t382 - t350*t381 - t351*t367 + t355*t383 - t379*(2*t364 +
+                    2*t365 + 2*t366))
+                t385 = friction_2*normal_2
+                t386 = (-friction_1*t373 - normal_2*t378 - normal_2*t380 - push*t371 - t346*t382 -
+                    t350*t383 - t351*t371 + t352*t381 - t371*t379 - t385*(2*t368 + 2*t369 +
+                    2*t370))
+                t387 = (-friction_1*normal_3*t367 - normal_3*t372 - normal_3*t380 - push*t377 -
+                    t345*t383 - t346*t381 + t347*t382 - t351*(2*t374 + 2*t375 + 2*t376) -
+                    t377*t379 - t377*t385)
+                t388 = (Rb_xx*t361 + Rb_xx*t384 + Rb_xy*t362 + Rb_xy*t386 + Rb_xz*t363 +
+                    Rb_xz*t387 + t344*t348 + t349*t353 + t354*t356)
+                t389 = Rb_yx*dthb_y - Rb_yy*dthb_x
+                t390 = -Rb_yx*dthb_z + Rb_yz*dthb_x
+                t391 = Rb_yy*dthb_z - Rb_yz*dthb_y
+                t392 = (Rb_yx*t361 + Rb_yx*t384 + Rb_yy*t362 + Rb_yy*t386 + Rb_yz*t363 +
+                    Rb_yz*t387 + t348*t389 + t353*t390 + t356*t391)
+                t393 = Rb_zx*dthb_y - Rb_zy*dthb_x
+                t394 = -Rb_zx*dthb_z + Rb_zz*dthb_x
+                t395 = Rb_zy*dthb_z - Rb_zz*dthb_y
+                t396 = (Rb_zx*t361 + Rb_zx*t384 + Rb_zy*t362 + Rb_zy*t386 + Rb_zz*t363 +
+                    Rb_zz*t387 + t348*t393 + t353*t394 + t356*t395)
+                t397 = xa_x - xb_x
+                t398 = xa_y - xb_y
+                t399 = xa_z - xb_z
+                t400 = Rb_xz*t397 + Rb_yz*t398 + Rb_zz*t399
+                t401 = Rb_xy*t397 + Rb_yy*t398 + Rb_zy*t399
+                t402 = -t401
+                t403 = dxa_x - dxb_x
+                t404 = dxa_y - dxb_y
+                t405 = dxa_z - dxb_z
+                t406 = Rb_xz*t403 + Rb_yz*t404 + Rb_zz*t405 + t344*t397 + t389*t398 + t393*t399
+                t407 = Rb_xy*t403 + Rb_yy*t404 + Rb_zy*t405 + t349*t397 + t390*t398 + t394*t399
+                t408 = Rb_xx*t397 + Rb_yx*t398 + Rb_zx*t399
+                t409 = -t400
+                t410 = Rb_xx*t403 + Rb_yx*t404 + Rb_zx*t405 + t354*t397 + t391*t398 + t395*t399
+                t411 = -t408
+                dFp_x = t388
+                dFp_y = t392
+                dFp_z = t396
+                dg[n] = -t388
+                dg[n + 1] = -t392
+                dg[n + 2] = -t396
+                dg[n + 3] = -t348*t407 + t353*t406 + t362*t400 + t363*t402 + t386*t400 + t387*t402
+                dg[n + 4] = t348*t410 - t356*t406 + t361*t409 + t363*t408 + t384*t409 + t387*t408
+                dg[n + 5] = -t353*t410 + t356*t407 + t361*t401 + t362*t411 + t384*t401 + t386*t411
                 # differential: force on the point in frame axes
                 dfp_x = (Fp_x*(R0_xy*dth0_z - R0_xz*dth0_y) + Fp_y*(R0_yy*dth0_z - R0_yz*dth0_y) +
                     Fp_z*(R0_zy*dth0_z - R0_zz*dth0_y) + R0_xx*dFp_x + R0_yx*dFp_y + R0_zx*dFp_z)
@@ -1463,11 +1699,36 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(i3 + 1) + 1], Phi[3*(i3 + 1) + 2])
                     Phi_positionz_x, Phi_positionz_y, Phi_positionz_z = (Phi[3*(i3 + 2)],
                         Phi[3*(i3 + 2) + 1], Phi[3*(i3 + 2) + 2])
-                    ds[i3] = Phi_positionx_x*dfp_x + Phi_positionx_y*dfp_y + Phi_positionx_z*dfp_z
-                    ds[i3 + 1] = (Phi_positiony_x*dfp_x + Phi_positiony_y*dfp_y +
-                        Phi_positiony_z*dfp_z)
-                    ds[i3 + 2] = (Phi_positionz_x*dfp_x + Phi_positionz_y*dfp_y +
-                        Phi_positionz_z*dfp_z)
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_z_positionx = bent_z[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    bent_z_positiony = bent_z[i3 + 1]
+                    bent_x_positionz = bent_x[i3 + 2]
+                    bent_y_positionz = bent_y[i3 + 2]
+                    bent_z_positionz = bent_z[i3 + 2]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_z_positionx = dbent_z[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    dbent_z_positiony = dbent_z[i3 + 1]
+                    dbent_x_positionz = dbent_x[i3 + 2]
+                    dbent_y_positionz = dbent_y[i3 + 2]
+                    dbent_z_positionz = dbent_z[i3 + 2]
+                    ds[i3] = (dbent_x_positionx*fp_x + dbent_y_positionx*fp_y +
+                        dbent_z_positionx*fp_z + dfp_x*(Phi_positionx_x + bent_x_positionx) +
+                        dfp_y*(Phi_positionx_y + bent_y_positionx) + dfp_z*(Phi_positionx_z +
+                        bent_z_positionx))
+                    ds[i3 + 1] = (dbent_x_positiony*fp_x + dbent_y_positiony*fp_y +
+                        dbent_z_positiony*fp_z + dfp_x*(Phi_positiony_x + bent_x_positiony) +
+                        dfp_y*(Phi_positiony_y + bent_y_positiony) + dfp_z*(Phi_positiony_z +
+                        bent_z_positiony))
+                    ds[i3 + 2] = (dbent_x_positionz*fp_x + dbent_y_positionz*fp_y +
+                        dbent_z_positionz*fp_z + dfp_x*(Phi_positionz_x + bent_x_positionz) +
+                        dfp_y*(Phi_positionz_y + bent_y_positionz) + dfp_z*(Phi_positionz_z +
+                        bent_z_positionz))
                 # differential: forces conjugate to the local coordinates: rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + 3*j
@@ -1477,15 +1738,48 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                         Phi[3*(j3 + 1) + 1], Phi[3*(j3 + 1) + 2])
                     Phi_rotationz_x, Phi_rotationz_y, Phi_rotationz_z = (Phi[3*(j3 + 2)],
                         Phi[3*(j3 + 2) + 1], Phi[3*(j3 + 2) + 2])
-                    ds[j3] = Phi_rotationx_x*dfp_x + Phi_rotationx_y*dfp_y + Phi_rotationx_z*dfp_z
-                    ds[j3 + 1] = (Phi_rotationy_x*dfp_x + Phi_rotationy_y*dfp_y +
-                        Phi_rotationy_z*dfp_z)
-                    ds[j3 + 2] = (Phi_rotationz_x*dfp_x + Phi_rotationz_y*dfp_y +
-                        Phi_rotationz_z*dfp_z)
+                    bent_x_rotationx = bent_x[j3]
+                    bent_y_rotationx = bent_y[j3]
+                    bent_z_rotationx = bent_z[j3]
+                    bent_x_rotationy = bent_x[j3 + 1]
+                    bent_y_rotationy = bent_y[j3 + 1]
+                    bent_z_rotationy = bent_z[j3 + 1]
+                    bent_x_rotationz = bent_x[j3 + 2]
+                    bent_y_rotationz = bent_y[j3 + 2]
+                    bent_z_rotationz = bent_z[j3 + 2]
+                    dbent_x_rotationx = dbent_x[j3]
+                    dbent_y_rotationx = dbent_y[j3]
+                    dbent_z_rotationx = dbent_z[j3]
+                    dbent_x_rotationy = dbent_x[j3 + 1]
+                    dbent_y_rotationy = dbent_y[j3 + 1]
+                    dbent_z_rotationy = dbent_z[j3 + 1]
+                    dbent_x_rotationz = dbent_x[j3 + 2]
+                    dbent_y_rotationz = dbent_y[j3 + 2]
+                    dbent_z_rotationz = dbent_z[j3 + 2]
+                    ds[j3] = (dbent_x_rotationx*fp_x + dbent_y_rotationx*fp_y +
+                        dbent_z_rotationx*fp_z + dfp_x*(Phi_rotationx_x + bent_x_rotationx) +
+                        dfp_y*(Phi_rotationx_y + bent_y_rotationx) + dfp_z*(Phi_rotationx_z +
+                        bent_z_rotationx))
+                    ds[j3 + 1] = (dbent_x_rotationy*fp_x + dbent_y_rotationy*fp_y +
+                        dbent_z_rotationy*fp_z + dfp_x*(Phi_rotationy_x + bent_x_rotationy) +
+                        dfp_y*(Phi_rotationy_y + bent_y_rotationy) + dfp_z*(Phi_rotationy_z +
+                        bent_z_rotationy))
+                    ds[j3 + 2] = (dbent_x_rotationz*fp_x + dbent_y_rotationz*fp_y +
+                        dbent_z_rotationz*fp_z + dfp_x*(Phi_rotationz_x + bent_x_rotationz) +
+                        dfp_y*(Phi_rotationz_y + bent_y_rotationz) + dfp_z*(Phi_rotationz_z +
+                        bent_z_rotationz))
                 # differential: forces conjugate to the local coordinates: modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y, Phi_mode_z = Phi[3*k], Phi[3*k + 1], Phi[3*k + 2]
-                    ds[k] = Phi_mode_x*dfp_x + Phi_mode_y*dfp_y + Phi_mode_z*dfp_z
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    bent_z_mode = bent_z[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    dbent_z_mode = dbent_z[k]
+                    ds[k] = (dbent_x_mode*fp_x + dbent_y_mode*fp_y + dbent_z_mode*fp_z +
+                        dfp_x*(Phi_mode_x + bent_x_mode) + dfp_y*(Phi_mode_y + bent_y_mode) +
+                        dfp_z*(Phi_mode_z + bent_z_mode))
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = dF_z = 0.0
                 dW_x = dW_y = dW_z = 0.0
@@ -1497,15 +1791,15 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     f_x, f_y, f_z = s[i3], s[i3 + 1], s[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t405 = X_z + u_z
-                    t406 = X_y + u_y
-                    t407 = X_x + u_x
+                    t412 = X_z + u_z
+                    t413 = X_y + u_y
+                    t414 = X_x + u_x
                     dF_x += alpha*dfp_x - df_x
                     dF_y += alpha*dfp_y - df_y
                     dF_z += alpha*dfp_z - df_z
-                    dW_x += df_y*t405 - df_z*t406 - du_y*f_z + du_z*f_y
-                    dW_y += -df_x*t405 + df_z*t407 + du_x*f_z - du_z*f_x
-                    dW_z += df_x*t406 - df_y*t407 - du_x*f_y + du_y*f_x
+                    dW_x += df_y*t412 - df_z*t413 - du_y*f_z + du_z*f_y
+                    dW_y += -df_x*t412 + df_z*t414 + du_x*f_z - du_z*f_x
+                    dW_z += df_x*t413 - df_y*t414 - du_x*f_y + du_y*f_x
                 # differential: moment of the force on the frame
                 dW_x += -dfp_y*rp_z + dfp_z*rp_y + drp_y*fp_z - drp_z*fp_y
                 dW_y += dfp_x*rp_z - dfp_z*rp_x - drp_x*fp_z + drp_z*fp_x
@@ -1519,25 +1813,25 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t408 = -m_x*psi_y + m_y*psi_x
-                    t409 = m_x*psi_z - m_z*psi_x
-                    t410 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
-                    t411 = dm_x*psi_z
-                    t412 = dpsi_z*m_x
-                    t413 = -dm_z*psi_x - dpsi_x*m_z + t411 + t412
-                    t414 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
-                    t415 = e1*t414
-                    t416 = -m_y*psi_z + m_z*psi_y
-                    t417 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
-                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t408 -
-                        0.5*dpsi_y*m_z + dpsi_z*e0*t409 + (0.5)*dpsi_z*m_y - e0*psi_y*t410 +
-                        e0*psi_z*t413 + e1*psi_z*t409*t414 - psi_y*t408*t415)
-                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t408 + (0.5)*dpsi_x*m_z -
-                        dpsi_z*e0*t416 + e0*psi_x*t410 - e0*psi_z*t417 + e1*psi_x*t408*t414 -
-                        psi_z*t415*t416 - 0.5*t411 - 0.5*t412)
-                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t409 -
-                        0.5*dpsi_x*m_y + dpsi_y*e0*t416 + (0.5)*dpsi_y*m_x - e0*psi_x*t413 +
-                        e0*psi_y*t417 + e1*psi_y*t414*t416 - psi_x*t409*t415)
+                    t415 = -m_x*psi_y + m_y*psi_x
+                    t416 = m_x*psi_z - m_z*psi_x
+                    t417 = -dm_x*psi_y + dm_y*psi_x + dpsi_x*m_y - dpsi_y*m_x
+                    t418 = dm_x*psi_z
+                    t419 = dpsi_z*m_x
+                    t420 = -dm_z*psi_x - dpsi_x*m_z + t418 + t419
+                    t421 = 2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z
+                    t422 = e1*t421
+                    t423 = -m_y*psi_z + m_z*psi_y
+                    t424 = -dm_y*psi_z + dm_z*psi_y + dpsi_y*m_z - dpsi_z*m_y
+                    dW_x += (-dm_x + (0.5)*dm_y*psi_z - 0.5*dm_z*psi_y - dpsi_y*e0*t415 -
+                        0.5*dpsi_y*m_z + dpsi_z*e0*t416 + (0.5)*dpsi_z*m_y - e0*psi_y*t417 +
+                        e0*psi_z*t420 + e1*psi_z*t416*t421 - psi_y*t415*t422)
+                    dW_y += (-dm_y + (0.5)*dm_z*psi_x + dpsi_x*e0*t415 + (0.5)*dpsi_x*m_z -
+                        dpsi_z*e0*t423 + e0*psi_x*t417 - e0*psi_z*t424 + e1*psi_x*t415*t421 -
+                        psi_z*t422*t423 - 0.5*t418 - 0.5*t419)
+                    dW_z += ((0.5)*dm_x*psi_y - 0.5*dm_y*psi_x - dm_z - dpsi_x*e0*t416 -
+                        0.5*dpsi_x*m_y + dpsi_y*e0*t423 + (0.5)*dpsi_y*m_x - e0*psi_x*t420 +
+                        e0*psi_y*t424 + e1*psi_y*t421*t423 - psi_x*t416*t422)
                 # differential: B^T wp = W
                 rhs_x = rhs_y = rhs_z = 0.0
                 for i in range(N_POSITIONS):
@@ -1545,26 +1839,26 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     du_x, du_y, du_z = dy[i3], dy[i3 + 1], dy[i3 + 2]
-                    t418 = X_x*wp_y - X_y*wp_x
-                    t419 = -X_x*wp_z + X_z*wp_x
-                    t420 = X_y*wp_z - X_z*wp_y
-                    rhs_x += -fit*(du_y*t418 - du_z*t419)
-                    rhs_y += -fit*(-du_x*t418 + du_z*t420)
-                    rhs_z += -fit*(du_x*t419 - du_y*t420)
-                t421 = dW_x + rhs_x
-                t422 = dW_y + rhs_y
-                t423 = dW_z + rhs_z
-                dwp_x = Bxx*t421 + Byx*t422 + Bzx*t423
-                dwp_y = Bxy*t421 + Byy*t422 + Bzy*t423
-                dwp_z = Bxz*t421 + Byz*t422 + Bzz*t423
+                    t425 = X_x*wp_y - X_y*wp_x
+                    t426 = -X_x*wp_z + X_z*wp_x
+                    t427 = X_y*wp_z - X_z*wp_y
+                    rhs_x += -fit*(du_y*t425 - du_z*t426)
+                    rhs_y += -fit*(-du_x*t425 + du_z*t427)
+                    rhs_z += -fit*(du_x*t426 - du_y*t427)
+                t428 = dW_x + rhs_x
+                t429 = dW_y + rhs_y
+                t430 = dW_z + rhs_z
+                dwp_x = Bxx*t428 + Byx*t429 + Bzx*t430
+                dwp_y = Bxy*t428 + Byy*t429 + Bzy*t430
+                dwp_z = Bxz*t428 + Byz*t429 + Bzz*t430
                 # differential: force on the origin, through the frame
                 for i in range(N_POSITIONS):
                     i3 = 3*i
                     fit = fits[i]
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
-                    t424 = dwp_z*fit
-                    dF_x += -X_y*t424 + X_z*dwp_y*fit
-                    dF_y += X_x*t424 - X_z*dwp_x*fit
+                    t431 = dwp_z*fit
+                    dF_x += -X_y*t431 + X_z*dwp_y*fit
+                    dF_y += X_x*t431 - X_z*dwp_x*fit
                     dF_z += -X_x*dwp_y*fit + X_y*dwp_x*fit
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
@@ -1573,10 +1867,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y, X_z = X[i3], X[i3 + 1], X[i3 + 2]
                     alpha = alphas[i]
                     df_x, df_y, df_z = ds[i3], ds[i3 + 1], ds[i3 + 2]
-                    t425 = dwp_z*fit
-                    t426 = X_z*fit
-                    dh[i3] = X_y*t425 + alpha*dF_x + df_x - dwp_y*t426
-                    dh[i3 + 1] = -X_x*t425 + alpha*dF_y + df_y + dwp_x*t426
+                    t432 = dwp_z*fit
+                    t433 = X_z*fit
+                    dh[i3] = X_y*t432 + alpha*dF_x + df_x - dwp_y*t433
+                    dh[i3 + 1] = -X_x*t432 + alpha*dF_y + df_y + dwp_x*t433
                     dh[i3 + 2] = X_x*dwp_y*fit - X_y*dwp_x*fit + alpha*dF_z + df_z
                 # differential: force on the nodes
                 for i in range(N_POSITIONS):
@@ -1601,33 +1895,33 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     dm_x, dm_y, dm_z = ds[j3], ds[j3 + 1], ds[j3 + 2]
                     e0 = e0s[j]
                     e1 = e1s[j]
-                    t427 = dm_y*psi_z
-                    t428 = dpsi_z*m_y
-                    t429 = -m_x*psi_y + m_y*psi_x
-                    t430 = e0*t429
-                    t431 = m_x*psi_z - m_z*psi_x
-                    t432 = dpsi_z*e0
-                    t433 = dm_x*psi_y
-                    t434 = dpsi_y*m_x
-                    t435 = e0*(dm_y*psi_x + dpsi_x*m_y - t433 - t434)
-                    t436 = dm_x*psi_z
-                    t437 = dpsi_z*m_x
-                    t438 = dm_z*psi_x
-                    t439 = dpsi_x*m_z
-                    t440 = t436 + t437 - t438 - t439
-                    t441 = e0*psi_z
-                    t442 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
-                    t443 = t429*t442
-                    t444 = psi_z*t442
-                    t445 = -m_y*psi_z + m_z*psi_y
-                    t446 = dm_z*psi_y + dpsi_y*m_z - t427 - t428
-                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t430 + psi_y*t435 +
-                        psi_y*t443 + (0.5)*t427 + (0.5)*t428 - t431*t432 - t431*t444 - t440*t441)
-                    dg[j3 + 1] = (dm_y - dpsi_x*t430 - psi_x*t435 - psi_x*t443 + t432*t445 -
-                        0.5*t436 - 0.5*t437 + (0.5)*t438 + (0.5)*t439 + t441*t446 + t444*t445)
-                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t431 - 0.5*dpsi_x*m_y -
-                        dpsi_y*e0*t445 + e0*psi_x*t440 - e0*psi_y*t446 + psi_x*t431*t442 -
-                        psi_y*t442*t445 + (0.5)*t433 + (0.5)*t434)
+                    t434 = dm_y*psi_z
+                    t435 = dpsi_z*m_y
+                    t436 = -m_x*psi_y + m_y*psi_x
+                    t437 = e0*t436
+                    t438 = m_x*psi_z - m_z*psi_x
+                    t439 = dpsi_z*e0
+                    t440 = dm_x*psi_y
+                    t441 = dpsi_y*m_x
+                    t442 = e0*(dm_y*psi_x + dpsi_x*m_y - t440 - t441)
+                    t443 = dm_x*psi_z
+                    t444 = dpsi_z*m_x
+                    t445 = dm_z*psi_x
+                    t446 = dpsi_x*m_z
+                    t447 = t443 + t444 - t445 - t446
+                    t448 = e0*psi_z
+                    t449 = e1*(2*dpsi_x*psi_x + 2*dpsi_y*psi_y + 2*dpsi_z*psi_z)
+                    t450 = t436*t449
+                    t451 = psi_z*t449
+                    t452 = -m_y*psi_z + m_z*psi_y
+                    t453 = dm_z*psi_y + dpsi_y*m_z - t434 - t435
+                    dg[j3] = (dm_x - 0.5*dm_z*psi_y - 0.5*dpsi_y*m_z + dpsi_y*t437 + psi_y*t442 +
+                        psi_y*t450 + (0.5)*t434 + (0.5)*t435 - t438*t439 - t438*t451 - t447*t448)
+                    dg[j3 + 1] = (dm_y - dpsi_x*t437 - psi_x*t442 - psi_x*t450 + t439*t452 -
+                        0.5*t443 - 0.5*t444 + (0.5)*t445 + (0.5)*t446 + t448*t453 + t451*t452)
+                    dg[j3 + 2] = (-0.5*dm_y*psi_x + dm_z + dpsi_x*e0*t438 - 0.5*dpsi_x*m_y -
+                        dpsi_y*e0*t452 + e0*psi_x*t447 - e0*psi_y*t453 + psi_x*t438*t449 -
+                        psi_y*t449*t452 + (0.5)*t440 + (0.5)*t441)
                 # differential: force of the internal modes
                 for k in range(MODES, n):
                     dfm = ds[k]

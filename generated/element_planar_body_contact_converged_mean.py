@@ -28,6 +28,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
+from sebody.kernels.dense import columns_times
 from sebody.kernels.frame_search import planar_mean
 
 FRAME = "converged_mean"
@@ -36,6 +37,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CARRIERS = 1         # nodes behind those of the body: that of the surface
 CONSTANTS = FRAME_CONSTANTS + (
+    Part("Hx", ("n", "n"), "second derivatives of the displacement along x", columns=True),
+    Part("Hy", ("n", "n"), "second derivatives of the displacement along y", columns=True),
     Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each"),
     Part("point", ("D",), "the point in the undeformed frame [length]"),
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
@@ -63,9 +66,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 15
-OPERATIONS = {"residual": (232, 67, 12, 0),
-              "column": (291, 94, 14, 0)}
+WORK_ROWS = 19
+OPERATIONS = {"residual": (232, 83, 20, 2),
+              "column": (291, 136, 35, 2)}
 
 
 @kernel_function
@@ -80,18 +83,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     qe = work
     ve = at(work, row)
     y = at(work, 2*row)
-    yd = at(work, 3*row)
-    eta = at(work, 4*row)
-    s = at(work, 5*row)
-    h = at(work, 6*row)
-    dqe = at(work, 7*row)
-    dve = at(work, 8*row)
-    dy = at(work, 9*row)
-    dyd = at(work, 10*row)
-    deta = at(work, 11*row)
-    dg = at(work, 12*row)
-    ds = at(work, 13*row)
-    dh = at(work, 14*row)
+    bent_x = at(work, 3*row)
+    bent_y = at(work, 4*row)
+    yd = at(work, 5*row)
+    eta = at(work, 6*row)
+    s = at(work, 7*row)
+    h = at(work, 8*row)
+    dqe = at(work, 9*row)
+    dve = at(work, 10*row)
+    dy = at(work, 11*row)
+    dbent_x = at(work, 12*row)
+    dbent_y = at(work, 13*row)
+    dyd = at(work, 14*row)
+    deta = at(work, 15*row)
+    dg = at(work, 16*row)
+    ds = at(work, 17*row)
+    dh = at(work, 18*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)
@@ -101,7 +108,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        Phi = at(X, 2*N_POSITIONS)
+        Hx = at(X, 2*N_POSITIONS)
+        Hy = at(Hx, n*padded(n))
+        Phi = at(Hy, n*padded(n))
         point = at(Phi, 2*n)
         law = at(point, 2)
         g = at(forces, element*width)
@@ -134,6 +143,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             qm = qe[k]
             y[k] = qm
+        # change of the shapes, Hx y
+        columns_times(Hx, y, bent_x, n, n)
+        # change of the shapes, Hy y
+        columns_times(Hy, y, bent_y, n, n)
         # displacement of the point by positions
         up_x = up_y = 0.0
         for i in range(N_POSITIONS):
@@ -141,21 +154,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y = y[i3], y[i3 + 1]
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-            up_x += Phi_positionx_x*u_x + Phi_positiony_x*u_y
-            up_y += Phi_positionx_y*u_x + Phi_positiony_y*u_y
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            up_x += (u_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + u_y*(Phi_positiony_x +
+                (0.5)*bent_x_positiony))
+            up_y += (u_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + u_y*(Phi_positiony_y +
+                (0.5)*bent_y_positiony))
         # displacement of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             psi_z = y[j3]
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-            up_x += Phi_rotationz_x*psi_z
-            up_y += Phi_rotationz_y*psi_z
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
+            up_x += psi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz)
+            up_y += psi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz)
         # displacement of the point by modes
         for k in range(MODES, n):
             ym = y[k]
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-            up_x += Phi_mode_x*ym
-            up_y += Phi_mode_y*ym
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            up_x += ym*(Phi_mode_x + (0.5)*bent_x_mode)
+            up_y += ym*(Phi_mode_y + (0.5)*bent_y_mode)
         # arm of the point in the frame
         Xp_x, Xp_y = point[0], point[1]
         rp_x = Xp_x + up_x
@@ -208,22 +231,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
             eu_x, eu_y = eta[i3], eta[i3 + 1]
-            upd_x += Phi_positionx_x*eu_x + Phi_positiony_x*eu_y
-            upd_y += Phi_positionx_y*eu_x + Phi_positiony_y*eu_y
+            upd_x += (eu_x*(Phi_positionx_x + bent_x_positionx) + eu_y*(Phi_positiony_x +
+                bent_x_positiony))
+            upd_y += (eu_x*(Phi_positionx_y + bent_y_positionx) + eu_y*(Phi_positiony_y +
+                bent_y_positiony))
         # rate of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
             ep_z = eta[j3]
-            upd_x += Phi_rotationz_x*ep_z
-            upd_y += Phi_rotationz_y*ep_z
+            upd_x += ep_z*(Phi_rotationz_x + bent_x_rotationz)
+            upd_y += ep_z*(Phi_rotationz_y + bent_y_rotationz)
         # rate of the point by modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
             em = eta[k]
-            upd_x += Phi_mode_x*em
-            upd_y += Phi_mode_y*em
+            upd_x += em*(Phi_mode_x + bent_x_mode)
+            upd_y += em*(Phi_mode_y + bent_y_mode)
         # velocity of the point
         t2 = -Om0_z*rp_y + upd_x + v0_x
         t3 = Om0_z*rp_x + upd_y + v0_y
@@ -380,17 +413,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-            s[i3] = Phi_positionx_x*fp_x + Phi_positionx_y*fp_y
-            s[i3 + 1] = Phi_positiony_x*fp_x + Phi_positiony_y*fp_y
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            s[i3] = (fp_x*(Phi_positionx_x + bent_x_positionx) + fp_y*(Phi_positionx_y +
+                bent_y_positionx))
+            s[i3 + 1] = (fp_x*(Phi_positiony_x + bent_x_positiony) + fp_y*(Phi_positiony_y +
+                bent_y_positiony))
         # forces conjugate to the local coordinates: rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-            s[j3] = Phi_rotationz_x*fp_x + Phi_rotationz_y*fp_y
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
+            s[j3] = (fp_x*(Phi_rotationz_x + bent_x_rotationz) + fp_y*(Phi_rotationz_y +
+                bent_y_rotationz))
         # forces conjugate to the local coordinates: modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-            s[k] = Phi_mode_x*fp_x + Phi_mode_y*fp_y
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            s[k] = fp_x*(Phi_mode_x + bent_x_mode) + fp_y*(Phi_mode_y + bent_y_mode)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = 0.0
         W_z = 0.0
@@ -649,38 +693,71 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # differential: change of the shapes, Hx y
+                columns_times(Hx, dy, dbent_x, n, n)
+                # differential: change of the shapes, Hy y
+                columns_times(Hy, dy, dbent_y, n, n)
                 # differential: displacement of the point by positions
                 dup_x = dup_y = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 2*i
+                    u_x, u_y = y[i3], y[i3 + 1]
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
-                    dup_x += Phi_positionx_x*du_x + Phi_positiony_x*du_y
-                    dup_y += Phi_positionx_y*du_x + Phi_positiony_y*du_y
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    t131 = (0.5)*u_x
+                    t132 = (0.5)*u_y
+                    dup_x += (dbent_x_positionx*t131 + dbent_x_positiony*t132 +
+                        du_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + du_y*(Phi_positiony_x +
+                        (0.5)*bent_x_positiony))
+                    dup_y += (dbent_y_positionx*t131 + dbent_y_positiony*t132 +
+                        du_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + du_y*(Phi_positiony_y +
+                        (0.5)*bent_y_positiony))
                 # differential: displacement of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
+                    psi_z = y[j3]
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
                     dpsi_z = dy[j3]
-                    dup_x += Phi_rotationz_x*dpsi_z
-                    dup_y += Phi_rotationz_y*dpsi_z
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
+                    t133 = (0.5)*psi_z
+                    dup_x += (dbent_x_rotationz*t133 + dpsi_z*(Phi_rotationz_x +
+                        (0.5)*bent_x_rotationz))
+                    dup_y += (dbent_y_rotationz*t133 + dpsi_z*(Phi_rotationz_y +
+                        (0.5)*bent_y_rotationz))
                 # differential: displacement of the point by modes
                 for k in range(MODES, n):
+                    ym = y[k]
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
                     dym = dy[k]
-                    dup_x += Phi_mode_x*dym
-                    dup_y += Phi_mode_y*dym
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    t134 = (0.5)*ym
+                    dup_x += dbent_x_mode*t134 + dym*(Phi_mode_x + (0.5)*bent_x_mode)
+                    dup_y += dbent_y_mode*t134 + dym*(Phi_mode_y + (0.5)*bent_y_mode)
                 # differential: arm of the point in the frame
                 drp_x = dup_x
                 drp_y = dup_y
                 # differential: place of the point
-                t131 = R0_cos*dth0_z
-                t132 = R0_sin*dth0_z
-                dxa_x = (R0_cos*drp_x + R0_cos*dx0_x - R0_sin*drp_y - R0_sin*dx0_y - rp_x*t132 -
-                    rp_y*t131)
-                dxa_y = (R0_cos*drp_y + R0_cos*dx0_y + R0_sin*drp_x + R0_sin*dx0_x + rp_x*t131 -
-                    rp_y*t132)
+                t135 = R0_cos*dth0_z
+                t136 = R0_sin*dth0_z
+                dxa_x = (R0_cos*drp_x + R0_cos*dx0_x - R0_sin*drp_y - R0_sin*dx0_y - rp_x*t136 -
+                    rp_y*t135)
+                dxa_y = (R0_cos*drp_y + R0_cos*dx0_y + R0_sin*drp_x + R0_sin*dx0_x + rp_x*t135 -
+                    rp_y*t136)
                 # differential: velocity of the nodes in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -728,129 +805,175 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    eu_x, eu_y = eta[i3], eta[i3 + 1]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
                     deu_x, deu_y = deta[i3], deta[i3 + 1]
-                    dupd_x += Phi_positionx_x*deu_x + Phi_positiony_x*deu_y
-                    dupd_y += Phi_positionx_y*deu_x + Phi_positiony_y*deu_y
+                    dupd_x += (dbent_x_positionx*eu_x + dbent_x_positiony*eu_y +
+                        deu_x*(Phi_positionx_x + bent_x_positionx) + deu_y*(Phi_positiony_x +
+                        bent_x_positiony))
+                    dupd_y += (dbent_y_positionx*eu_x + dbent_y_positiony*eu_y +
+                        deu_x*(Phi_positionx_y + bent_y_positionx) + deu_y*(Phi_positiony_y +
+                        bent_y_positiony))
                 # differential: rate of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
+                    ep_z = eta[j3]
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
                     dep_z = deta[j3]
-                    dupd_x += Phi_rotationz_x*dep_z
-                    dupd_y += Phi_rotationz_y*dep_z
+                    dupd_x += dbent_x_rotationz*ep_z + dep_z*(Phi_rotationz_x + bent_x_rotationz)
+                    dupd_y += dbent_y_rotationz*ep_z + dep_z*(Phi_rotationz_y + bent_y_rotationz)
                 # differential: rate of the point by modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    em = eta[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
                     dem = deta[k]
-                    dupd_x += Phi_mode_x*dem
-                    dupd_y += Phi_mode_y*dem
+                    dupd_x += dbent_x_mode*em + dem*(Phi_mode_x + bent_x_mode)
+                    dupd_y += dbent_y_mode*em + dem*(Phi_mode_y + bent_y_mode)
                 # differential: velocity of the point
-                t133 = Om0_z*rp_x + upd_y + v0_y
-                t134 = R0_cos*dth0_z
-                t135 = -Om0_z*rp_y + upd_x + v0_x
-                t136 = R0_sin*dth0_z
-                t137 = Om0_z*drp_x + dOm0_z*rp_x + dupd_y + dv0_y
-                t138 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
-                dva_x = R0_cos*t138 - R0_sin*t137 - t133*t134 - t135*t136
-                dva_y = R0_cos*t137 + R0_sin*t138 - t133*t136 + t134*t135
+                t137 = Om0_z*rp_x + upd_y + v0_y
+                t138 = R0_cos*dth0_z
+                t139 = -Om0_z*rp_y + upd_x + v0_x
+                t140 = R0_sin*dth0_z
+                t141 = Om0_z*drp_x + dOm0_z*rp_x + dupd_y + dv0_y
+                t142 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
+                dva_x = R0_cos*t142 - R0_sin*t141 - t137*t138 - t139*t140
+                dva_y = R0_cos*t141 + R0_sin*t142 - t137*t140 + t138*t139
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dthb_z = dqe[n + 2]
                 uxb_x = dve[n]
                 uxb_y = dve[n + 1]
                 uthb_z = dve[n + 2]
-                t139 = dxa_x - dxb_x
-                t140 = dxa_y - dxb_y
-                t141 = xa_y - xb_y
-                t142 = Rb_cos*t141
-                t143 = xa_x - xb_x
-                t144 = Rb_sin*t143
-                t145 = Rb_cos*t139 + Rb_sin*t140 + dthb_z*t142 - dthb_z*t144
-                t146 = Rb_cos*t143
-                t147 = Rb_sin*t141
-                t148 = Rb_cos*t140 - Rb_sin*t139 - dthb_z*t146 - dthb_z*t147
-                t149 = va_y - vb_y
-                t150 = Rb_cos*dthb_z
-                t151 = va_x - vb_x
-                t152 = Rb_sin*dthb_z
-                t153 = dva_x - uxb_x
-                t154 = dva_y - uxb_y
-                dplace_1 = t145
-                dplace_2 = t148
-                drate_1 = Omb_z*t148 + t149*t150 - t151*t152
-                urate_1 = Rb_cos*t153 + Rb_sin*t154 + uthb_z*(t142 - t144)
-                drate_2 = -Omb_z*t145 - t149*t152 - t150*t151
-                urate_2 = Rb_cos*t154 - Rb_sin*t153 - uthb_z*(t146 + t147)
-                t155 = normal_1*normal_2
-                t156 = 1 - normal_2*normal_2
-                t157 = -friction_1*t155 + friction_2*t156 - normal_2*push
-                t158 = Rb_cos*dthb_z
-                t159 = 1 - normal_1*normal_1
-                t160 = friction_1*t159 - friction_2*t155 - normal_1*push
-                t161 = Rb_sin*dthb_z
-                t162 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
-                t163 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
-                t164 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
-                t165 = -normal_2*t162 - t155*t163 + t156*t164
-                t166 = -normal_1*t162 - t155*t164 + t159*t163
-                t167 = dnormal_2_by_place_1*dplace_1
-                t168 = dnormal_2_by_place_2*dplace_2
-                t169 = t167 + t168
-                t170 = friction_1*normal_1
-                t171 = dnormal_1_by_place_1*dplace_1
-                t172 = dnormal_1_by_place_2*dplace_2
+                t143 = dxa_x - dxb_x
+                t144 = dxa_y - dxb_y
+                t145 = xa_y - xb_y
+                t146 = Rb_cos*t145
+                t147 = xa_x - xb_x
+                t148 = Rb_sin*t147
+                t149 = Rb_cos*t143 + Rb_sin*t144 + dthb_z*t146 - dthb_z*t148
+                t150 = Rb_cos*t147
+                t151 = Rb_sin*t145
+                t152 = Rb_cos*t144 - Rb_sin*t143 - dthb_z*t150 - dthb_z*t151
+                t153 = va_y - vb_y
+                t154 = Rb_cos*dthb_z
+                t155 = va_x - vb_x
+                t156 = Rb_sin*dthb_z
+                t157 = dva_x - uxb_x
+                t158 = dva_y - uxb_y
+                dplace_1 = t149
+                dplace_2 = t152
+                drate_1 = Omb_z*t152 + t153*t154 - t155*t156
+                urate_1 = Rb_cos*t157 + Rb_sin*t158 + uthb_z*(t146 - t148)
+                drate_2 = -Omb_z*t149 - t153*t156 - t154*t155
+                urate_2 = Rb_cos*t158 - Rb_sin*t157 - uthb_z*(t150 + t151)
+                t159 = normal_1*normal_2
+                t160 = 1 - normal_2*normal_2
+                t161 = -friction_1*t159 + friction_2*t160 - normal_2*push
+                t162 = Rb_cos*dthb_z
+                t163 = 1 - normal_1*normal_1
+                t164 = friction_1*t163 - friction_2*t159 - normal_1*push
+                t165 = Rb_sin*dthb_z
+                t166 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t167 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
+                t168 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
+                t169 = -normal_2*t166 - t159*t167 + t160*t168
+                t170 = -normal_1*t166 - t159*t168 + t163*t167
+                t171 = dnormal_2_by_place_1*dplace_1
+                t172 = dnormal_2_by_place_2*dplace_2
                 t173 = t171 + t172
-                t174 = normal_2*t173
-                t175 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t174 = friction_1*normal_1
+                t175 = dnormal_1_by_place_1*dplace_1
+                t176 = dnormal_1_by_place_2*dplace_2
+                t177 = t175 + t176
+                t178 = normal_2*t177
+                t179 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
-                t176 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t180 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2)
-                t177 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t181 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2)
-                t178 = (-friction_1*t174 - friction_2*normal_2*(2*t167 + 2*t168) - normal_2*t175 -
-                    push*t169 - t155*t176 + t156*t177 - t169*t170)
-                t179 = (-friction_2*normal_1*t169 - friction_2*t174 - normal_1*t175 - push*t173 -
-                    t155*t177 + t159*t176 - t170*(2*t171 + 2*t172))
-                t180 = (-Rb_cos*t166 - Rb_cos*t179 + Rb_sin*t165 + Rb_sin*t178 + t157*t158 +
-                    t160*t161)
-                t181 = Rb_cos*t165 + Rb_cos*t178 + Rb_sin*t166 + Rb_sin*t179 - t157*t161 + t158*t160
-                t182 = xa_y - xb_y
-                t183 = Rb_cos*t182
-                t184 = xa_x - xb_x
-                t185 = -Rb_sin*t184 + t183
-                t186 = dxa_x - dxb_x
-                t187 = dxa_y - dxb_y
-                t188 = Rb_cos*t184
-                t189 = Rb_sin*t182
-                t190 = -t188 - t189
-                dFp_x = -t180
-                dFp_y = t181
-                dg[n] = t180
-                dg[n + 1] = -t181
-                dg[n + 2] = (t157*(-Rb_cos*t186 + Rb_sin*dthb_z*t184 - Rb_sin*t187 - dthb_z*t183)
-                    + t160*(Rb_cos*t187 - Rb_sin*t186 - dthb_z*t188 - dthb_z*t189) + t165*t190 +
-                    t166*t185 + t178*t190 + t179*t185)
+                t182 = (-friction_1*t178 - friction_2*normal_2*(2*t171 + 2*t172) - normal_2*t179 -
+                    push*t173 - t159*t180 + t160*t181 - t173*t174)
+                t183 = (-friction_2*normal_1*t173 - friction_2*t178 - normal_1*t179 - push*t177 -
+                    t159*t181 + t163*t180 - t174*(2*t175 + 2*t176))
+                t184 = (-Rb_cos*t170 - Rb_cos*t183 + Rb_sin*t169 + Rb_sin*t182 + t161*t162 +
+                    t164*t165)
+                t185 = Rb_cos*t169 + Rb_cos*t182 + Rb_sin*t170 + Rb_sin*t183 - t161*t165 + t162*t164
+                t186 = xa_y - xb_y
+                t187 = Rb_cos*t186
+                t188 = xa_x - xb_x
+                t189 = -Rb_sin*t188 + t187
+                t190 = dxa_x - dxb_x
+                t191 = dxa_y - dxb_y
+                t192 = Rb_cos*t188
+                t193 = Rb_sin*t186
+                t194 = -t192 - t193
+                dFp_x = -t184
+                dFp_y = t185
+                dg[n] = t184
+                dg[n + 1] = -t185
+                dg[n + 2] = (t161*(-Rb_cos*t190 + Rb_sin*dthb_z*t188 - Rb_sin*t191 - dthb_z*t187)
+                    + t164*(Rb_cos*t191 - Rb_sin*t190 - dthb_z*t192 - dthb_z*t193) + t169*t194 +
+                    t170*t189 + t182*t194 + t183*t189)
                 # differential: force on the point in frame axes
-                t191 = R0_cos*dth0_z
-                t192 = R0_sin*dth0_z
-                dfp_x = -Fp_x*t192 + Fp_y*t191 + R0_cos*dFp_x + R0_sin*dFp_y
-                dfp_y = -Fp_x*t191 - Fp_y*t192 + R0_cos*dFp_y - R0_sin*dFp_x
+                t195 = R0_cos*dth0_z
+                t196 = R0_sin*dth0_z
+                dfp_x = -Fp_x*t196 + Fp_y*t195 + R0_cos*dFp_x + R0_sin*dFp_y
+                dfp_y = -Fp_x*t195 - Fp_y*t196 + R0_cos*dFp_y - R0_sin*dFp_x
                 # differential: forces conjugate to the local coordinates: positions
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-                    ds[i3] = Phi_positionx_x*dfp_x + Phi_positionx_y*dfp_y
-                    ds[i3 + 1] = Phi_positiony_x*dfp_x + Phi_positiony_y*dfp_y
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    ds[i3] = (dbent_x_positionx*fp_x + dbent_y_positionx*fp_y +
+                        dfp_x*(Phi_positionx_x + bent_x_positionx) + dfp_y*(Phi_positionx_y +
+                        bent_y_positionx))
+                    ds[i3 + 1] = (dbent_x_positiony*fp_x + dbent_y_positiony*fp_y +
+                        dfp_x*(Phi_positiony_x + bent_x_positiony) + dfp_y*(Phi_positiony_y +
+                        bent_y_positiony))
                 # differential: forces conjugate to the local coordinates: rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-                    ds[j3] = Phi_rotationz_x*dfp_x + Phi_rotationz_y*dfp_y
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
+                    ds[j3] = (dbent_x_rotationz*fp_x + dbent_y_rotationz*fp_y +
+                        dfp_x*(Phi_rotationz_x + bent_x_rotationz) + dfp_y*(Phi_rotationz_y +
+                        bent_y_rotationz))
                 # differential: forces conjugate to the local coordinates: modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-                    ds[k] = Phi_mode_x*dfp_x + Phi_mode_y*dfp_y
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    ds[k] = (dbent_x_mode*fp_x + dbent_y_mode*fp_y + dfp_x*(Phi_mode_x +
+                        bent_x_mode) + dfp_y*(Phi_mode_y + bent_y_mode))
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = 0.0
                 dW_z = 0.0
@@ -887,10 +1010,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    t193 = R0_cos*dth0_z
-                    t194 = R0_sin*dth0_z
-                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t194 - h_y*t193
-                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t193 - h_y*t194
+                    t197 = R0_cos*dth0_z
+                    t198 = R0_sin*dth0_z
+                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t198 - h_y*t197
+                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t197 - h_y*t198
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

@@ -28,6 +28,7 @@ from sebody.contract.layout import (
     Part,
 )
 from sebody.kernels.abi import at, padded
+from sebody.kernels.dense import columns_times
 from sebody.kernels.frame_search import planar_fit, planar_relative_angles
 
 FRAME = "positions"
@@ -36,6 +37,8 @@ N_POSITIONS = None
 N_ROTATIONS = None
 CARRIERS = 1         # nodes behind those of the body: that of the surface
 CONSTANTS = FRAME_CONSTANTS + (
+    Part("Hx", ("n", "n"), "second derivatives of the displacement along x", columns=True),
+    Part("Hy", ("n", "n"), "second derivatives of the displacement along y", columns=True),
     Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each"),
     Part("point", ("D",), "the point in the undeformed frame [length]"),
     Part("stiffness", (), "stiffness k of k d^n (1 + c d')"),
@@ -63,9 +66,9 @@ WIDTH = None            # any number
 INERTIAL = False        # has kinetic energy
 POWER = True        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
-WORK_ROWS = 15
-OPERATIONS = {"residual": (395, 92, 9, 0),
-              "column": (294, 131, 10, 0)}
+WORK_ROWS = 19
+OPERATIONS = {"residual": (395, 108, 17, 2),
+              "column": (294, 173, 31, 2)}
 
 
 @kernel_function
@@ -80,18 +83,22 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
     qe = work
     ve = at(work, row)
     y = at(work, 2*row)
-    yd = at(work, 3*row)
-    eta = at(work, 4*row)
-    s = at(work, 5*row)
-    h = at(work, 6*row)
-    dqe = at(work, 7*row)
-    dve = at(work, 8*row)
-    dy = at(work, 9*row)
-    dyd = at(work, 10*row)
-    deta = at(work, 11*row)
-    dg = at(work, 12*row)
-    ds = at(work, 13*row)
-    dh = at(work, 14*row)
+    bent_x = at(work, 3*row)
+    bent_y = at(work, 4*row)
+    yd = at(work, 5*row)
+    eta = at(work, 6*row)
+    s = at(work, 7*row)
+    h = at(work, 8*row)
+    dqe = at(work, 9*row)
+    dve = at(work, 10*row)
+    dy = at(work, 11*row)
+    dbent_x = at(work, 12*row)
+    dbent_y = at(work, 13*row)
+    dyd = at(work, 14*row)
+    deta = at(work, 15*row)
+    dg = at(work, 16*row)
+    ds = at(work, 17*row)
+    dh = at(work, 18*row)
     for element in range(count):
         first = element*stride
         nodes = at(index, first + HEADER)
@@ -101,7 +108,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         fits = at(alphas, N_POSITIONS)
         alpha_rs = at(fits, N_POSITIONS)
         X = at(alpha_rs, N_ROTATIONS)
-        Phi = at(X, 2*N_POSITIONS)
+        Hx = at(X, 2*N_POSITIONS)
+        Hy = at(Hx, n*padded(n))
+        Phi = at(Hy, n*padded(n))
         point = at(Phi, 2*n)
         law = at(point, 2)
         g = at(forces, element*width)
@@ -138,6 +147,10 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         for k in range(MODES, n):
             qm = qe[k]
             y[k] = qm
+        # change of the shapes, Hx y
+        columns_times(Hx, y, bent_x, n, n)
+        # change of the shapes, Hy y
+        columns_times(Hy, y, bent_y, n, n)
         # displacement of the point by positions
         up_x = up_y = 0.0
         for i in range(N_POSITIONS):
@@ -145,21 +158,31 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             u_x, u_y = y[i3], y[i3 + 1]
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-            up_x += Phi_positionx_x*u_x + Phi_positiony_x*u_y
-            up_y += Phi_positionx_y*u_x + Phi_positiony_y*u_y
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            up_x += (u_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + u_y*(Phi_positiony_x +
+                (0.5)*bent_x_positiony))
+            up_y += (u_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + u_y*(Phi_positiony_y +
+                (0.5)*bent_y_positiony))
         # displacement of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             psi_z = y[j3]
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-            up_x += Phi_rotationz_x*psi_z
-            up_y += Phi_rotationz_y*psi_z
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
+            up_x += psi_z*(Phi_rotationz_x + (0.5)*bent_x_rotationz)
+            up_y += psi_z*(Phi_rotationz_y + (0.5)*bent_y_rotationz)
         # displacement of the point by modes
         for k in range(MODES, n):
             ym = y[k]
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-            up_x += Phi_mode_x*ym
-            up_y += Phi_mode_y*ym
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            up_x += ym*(Phi_mode_x + (0.5)*bent_x_mode)
+            up_y += ym*(Phi_mode_y + (0.5)*bent_y_mode)
         # arm of the point in the frame
         Xp_x, Xp_y = point[0], point[1]
         rp_x = Xp_x + up_x
@@ -225,22 +248,32 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
             eu_x, eu_y = eta[i3], eta[i3 + 1]
-            upd_x += Phi_positionx_x*eu_x + Phi_positiony_x*eu_y
-            upd_y += Phi_positionx_y*eu_x + Phi_positiony_y*eu_y
+            upd_x += (eu_x*(Phi_positionx_x + bent_x_positionx) + eu_y*(Phi_positiony_x +
+                bent_x_positiony))
+            upd_y += (eu_x*(Phi_positionx_y + bent_y_positionx) + eu_y*(Phi_positiony_y +
+                bent_y_positiony))
         # rate of the point by rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
             ep_z = eta[j3]
-            upd_x += Phi_rotationz_x*ep_z
-            upd_y += Phi_rotationz_y*ep_z
+            upd_x += ep_z*(Phi_rotationz_x + bent_x_rotationz)
+            upd_y += ep_z*(Phi_rotationz_y + bent_y_rotationz)
         # rate of the point by modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
             em = eta[k]
-            upd_x += Phi_mode_x*em
-            upd_y += Phi_mode_y*em
+            upd_x += em*(Phi_mode_x + bent_x_mode)
+            upd_y += em*(Phi_mode_y + bent_y_mode)
         # velocity of the point
         t2 = -Om0_z*rp_y + upd_x + v0_x
         t3 = Om0_z*rp_x + upd_y + v0_y
@@ -397,17 +430,28 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             i3 = 2*i
             Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
             Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-            s[i3] = Phi_positionx_x*fp_x + Phi_positionx_y*fp_y
-            s[i3 + 1] = Phi_positiony_x*fp_x + Phi_positiony_y*fp_y
+            bent_x_positionx = bent_x[i3]
+            bent_y_positionx = bent_y[i3]
+            bent_x_positiony = bent_x[i3 + 1]
+            bent_y_positiony = bent_y[i3 + 1]
+            s[i3] = (fp_x*(Phi_positionx_x + bent_x_positionx) + fp_y*(Phi_positionx_y +
+                bent_y_positionx))
+            s[i3 + 1] = (fp_x*(Phi_positiony_x + bent_x_positiony) + fp_y*(Phi_positiony_y +
+                bent_y_positiony))
         # forces conjugate to the local coordinates: rotations
         for j in range(N_ROTATIONS):
             j3 = ROTATIONS + j
             Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-            s[j3] = Phi_rotationz_x*fp_x + Phi_rotationz_y*fp_y
+            bent_x_rotationz = bent_x[j3]
+            bent_y_rotationz = bent_y[j3]
+            s[j3] = (fp_x*(Phi_rotationz_x + bent_x_rotationz) + fp_y*(Phi_rotationz_y +
+                bent_y_rotationz))
         # forces conjugate to the local coordinates: modes
         for k in range(MODES, n):
             Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-            s[k] = Phi_mode_x*fp_x + Phi_mode_y*fp_y
+            bent_x_mode = bent_x[k]
+            bent_y_mode = bent_y[k]
+            s[k] = fp_x*(Phi_mode_x + bent_x_mode) + fp_y*(Phi_mode_y + bent_y_mode)
         # forces on the frame: elastic (30) and inertia (57)
         F_x = F_y = 0.0
         W_z = 0.0
@@ -686,38 +730,71 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                 for k in range(MODES, n):
                     dqm = dqe[k]
                     dy[k] = dqm
+                # differential: change of the shapes, Hx y
+                columns_times(Hx, dy, dbent_x, n, n)
+                # differential: change of the shapes, Hy y
+                columns_times(Hy, dy, dbent_y, n, n)
                 # differential: displacement of the point by positions
                 dup_x = dup_y = 0.0
                 for i in range(N_POSITIONS):
                     i3 = 2*i
+                    u_x, u_y = y[i3], y[i3 + 1]
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
                     du_x, du_y = dy[i3], dy[i3 + 1]
-                    dup_x += Phi_positionx_x*du_x + Phi_positiony_x*du_y
-                    dup_y += Phi_positionx_y*du_x + Phi_positiony_y*du_y
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    t133 = (0.5)*u_x
+                    t134 = (0.5)*u_y
+                    dup_x += (dbent_x_positionx*t133 + dbent_x_positiony*t134 +
+                        du_x*(Phi_positionx_x + (0.5)*bent_x_positionx) + du_y*(Phi_positiony_x +
+                        (0.5)*bent_x_positiony))
+                    dup_y += (dbent_y_positionx*t133 + dbent_y_positiony*t134 +
+                        du_x*(Phi_positionx_y + (0.5)*bent_y_positionx) + du_y*(Phi_positiony_y +
+                        (0.5)*bent_y_positiony))
                 # differential: displacement of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
+                    psi_z = y[j3]
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
                     dpsi_z = dy[j3]
-                    dup_x += Phi_rotationz_x*dpsi_z
-                    dup_y += Phi_rotationz_y*dpsi_z
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
+                    t135 = (0.5)*psi_z
+                    dup_x += (dbent_x_rotationz*t135 + dpsi_z*(Phi_rotationz_x +
+                        (0.5)*bent_x_rotationz))
+                    dup_y += (dbent_y_rotationz*t135 + dpsi_z*(Phi_rotationz_y +
+                        (0.5)*bent_y_rotationz))
                 # differential: displacement of the point by modes
                 for k in range(MODES, n):
+                    ym = y[k]
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
                     dym = dy[k]
-                    dup_x += Phi_mode_x*dym
-                    dup_y += Phi_mode_y*dym
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    t136 = (0.5)*ym
+                    dup_x += dbent_x_mode*t136 + dym*(Phi_mode_x + (0.5)*bent_x_mode)
+                    dup_y += dbent_y_mode*t136 + dym*(Phi_mode_y + (0.5)*bent_y_mode)
                 # differential: arm of the point in the frame
                 drp_x = dup_x
                 drp_y = dup_y
                 # differential: place of the point
-                t133 = R0_cos*dth0_z
-                t134 = R0_sin*dth0_z
-                dxa_x = (R0_cos*drp_x + R0_cos*dx0_x - R0_sin*drp_y - R0_sin*dx0_y - rp_x*t134 -
-                    rp_y*t133)
-                dxa_y = (R0_cos*drp_y + R0_cos*dx0_y + R0_sin*drp_x + R0_sin*dx0_x + rp_x*t133 -
-                    rp_y*t134)
+                t137 = R0_cos*dth0_z
+                t138 = R0_sin*dth0_z
+                dxa_x = (R0_cos*drp_x + R0_cos*dx0_x - R0_sin*drp_y - R0_sin*dx0_y - rp_x*t138 -
+                    rp_y*t137)
+                dxa_y = (R0_cos*drp_y + R0_cos*dx0_y + R0_sin*drp_x + R0_sin*dx0_x + rp_x*t137 -
+                    rp_y*t138)
                 # differential: velocity of the nodes in frame axes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -776,129 +853,175 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    eu_x, eu_y = eta[i3], eta[i3 + 1]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
                     deu_x, deu_y = deta[i3], deta[i3 + 1]
-                    dupd_x += Phi_positionx_x*deu_x + Phi_positiony_x*deu_y
-                    dupd_y += Phi_positionx_y*deu_x + Phi_positiony_y*deu_y
+                    dupd_x += (dbent_x_positionx*eu_x + dbent_x_positiony*eu_y +
+                        deu_x*(Phi_positionx_x + bent_x_positionx) + deu_y*(Phi_positiony_x +
+                        bent_x_positiony))
+                    dupd_y += (dbent_y_positionx*eu_x + dbent_y_positiony*eu_y +
+                        deu_x*(Phi_positionx_y + bent_y_positionx) + deu_y*(Phi_positiony_y +
+                        bent_y_positiony))
                 # differential: rate of the point by rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
+                    ep_z = eta[j3]
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
                     dep_z = deta[j3]
-                    dupd_x += Phi_rotationz_x*dep_z
-                    dupd_y += Phi_rotationz_y*dep_z
+                    dupd_x += dbent_x_rotationz*ep_z + dep_z*(Phi_rotationz_x + bent_x_rotationz)
+                    dupd_y += dbent_y_rotationz*ep_z + dep_z*(Phi_rotationz_y + bent_y_rotationz)
                 # differential: rate of the point by modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    em = eta[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
                     dem = deta[k]
-                    dupd_x += Phi_mode_x*dem
-                    dupd_y += Phi_mode_y*dem
+                    dupd_x += dbent_x_mode*em + dem*(Phi_mode_x + bent_x_mode)
+                    dupd_y += dbent_y_mode*em + dem*(Phi_mode_y + bent_y_mode)
                 # differential: velocity of the point
-                t135 = Om0_z*rp_x + upd_y + v0_y
-                t136 = R0_cos*dth0_z
-                t137 = -Om0_z*rp_y + upd_x + v0_x
-                t138 = R0_sin*dth0_z
-                t139 = Om0_z*drp_x + dOm0_z*rp_x + dupd_y + dv0_y
-                t140 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
-                dva_x = R0_cos*t140 - R0_sin*t139 - t135*t136 - t137*t138
-                dva_y = R0_cos*t139 + R0_sin*t140 - t135*t138 + t136*t137
+                t139 = Om0_z*rp_x + upd_y + v0_y
+                t140 = R0_cos*dth0_z
+                t141 = -Om0_z*rp_y + upd_x + v0_x
+                t142 = R0_sin*dth0_z
+                t143 = Om0_z*drp_x + dOm0_z*rp_x + dupd_y + dv0_y
+                t144 = -Om0_z*drp_y - dOm0_z*rp_y + dupd_x + dv0_x
+                dva_x = R0_cos*t144 - R0_sin*t143 - t139*t140 - t141*t142
+                dva_y = R0_cos*t143 + R0_sin*t144 - t139*t142 + t140*t141
                 dxb_x = dqe[n]
                 dxb_y = dqe[n + 1]
                 dthb_z = dqe[n + 2]
                 uxb_x = dve[n]
                 uxb_y = dve[n + 1]
                 uthb_z = dve[n + 2]
-                t141 = dxa_x - dxb_x
-                t142 = dxa_y - dxb_y
-                t143 = xa_y - xb_y
-                t144 = Rb_cos*t143
-                t145 = xa_x - xb_x
-                t146 = Rb_sin*t145
-                t147 = Rb_cos*t141 + Rb_sin*t142 + dthb_z*t144 - dthb_z*t146
-                t148 = Rb_cos*t145
-                t149 = Rb_sin*t143
-                t150 = Rb_cos*t142 - Rb_sin*t141 - dthb_z*t148 - dthb_z*t149
-                t151 = va_y - vb_y
-                t152 = Rb_cos*dthb_z
-                t153 = va_x - vb_x
-                t154 = Rb_sin*dthb_z
-                t155 = dva_x - uxb_x
-                t156 = dva_y - uxb_y
-                dplace_1 = t147
-                dplace_2 = t150
-                drate_1 = Omb_z*t150 + t151*t152 - t153*t154
-                urate_1 = Rb_cos*t155 + Rb_sin*t156 + uthb_z*(t144 - t146)
-                drate_2 = -Omb_z*t147 - t151*t154 - t152*t153
-                urate_2 = Rb_cos*t156 - Rb_sin*t155 - uthb_z*(t148 + t149)
-                t157 = normal_1*normal_2
-                t158 = 1 - normal_2*normal_2
-                t159 = -friction_1*t157 + friction_2*t158 - normal_2*push
-                t160 = Rb_cos*dthb_z
-                t161 = 1 - normal_1*normal_1
-                t162 = friction_1*t161 - friction_2*t157 - normal_1*push
-                t163 = Rb_sin*dthb_z
-                t164 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
-                t165 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
-                t166 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
-                t167 = -normal_2*t164 - t157*t165 + t158*t166
-                t168 = -normal_1*t164 - t157*t166 + t161*t165
-                t169 = dnormal_2_by_place_1*dplace_1
-                t170 = dnormal_2_by_place_2*dplace_2
-                t171 = t169 + t170
-                t172 = friction_1*normal_1
-                t173 = dnormal_1_by_place_1*dplace_1
-                t174 = dnormal_1_by_place_2*dplace_2
+                t145 = dxa_x - dxb_x
+                t146 = dxa_y - dxb_y
+                t147 = xa_y - xb_y
+                t148 = Rb_cos*t147
+                t149 = xa_x - xb_x
+                t150 = Rb_sin*t149
+                t151 = Rb_cos*t145 + Rb_sin*t146 + dthb_z*t148 - dthb_z*t150
+                t152 = Rb_cos*t149
+                t153 = Rb_sin*t147
+                t154 = Rb_cos*t146 - Rb_sin*t145 - dthb_z*t152 - dthb_z*t153
+                t155 = va_y - vb_y
+                t156 = Rb_cos*dthb_z
+                t157 = va_x - vb_x
+                t158 = Rb_sin*dthb_z
+                t159 = dva_x - uxb_x
+                t160 = dva_y - uxb_y
+                dplace_1 = t151
+                dplace_2 = t154
+                drate_1 = Omb_z*t154 + t155*t156 - t157*t158
+                urate_1 = Rb_cos*t159 + Rb_sin*t160 + uthb_z*(t148 - t150)
+                drate_2 = -Omb_z*t151 - t155*t158 - t156*t157
+                urate_2 = Rb_cos*t160 - Rb_sin*t159 - uthb_z*(t152 + t153)
+                t161 = normal_1*normal_2
+                t162 = 1 - normal_2*normal_2
+                t163 = -friction_1*t161 + friction_2*t162 - normal_2*push
+                t164 = Rb_cos*dthb_z
+                t165 = 1 - normal_1*normal_1
+                t166 = friction_1*t165 - friction_2*t161 - normal_1*push
+                t167 = Rb_sin*dthb_z
+                t168 = dpush_by_rate_1*urate_1 + dpush_by_rate_2*urate_2
+                t169 = dfriction_1_by_rate_1*urate_1 + dfriction_1_by_rate_2*urate_2
+                t170 = dfriction_2_by_rate_1*urate_1 + dfriction_2_by_rate_2*urate_2
+                t171 = -normal_2*t168 - t161*t169 + t162*t170
+                t172 = -normal_1*t168 - t161*t170 + t165*t169
+                t173 = dnormal_2_by_place_1*dplace_1
+                t174 = dnormal_2_by_place_2*dplace_2
                 t175 = t173 + t174
-                t176 = normal_2*t175
-                t177 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
+                t176 = friction_1*normal_1
+                t177 = dnormal_1_by_place_1*dplace_1
+                t178 = dnormal_1_by_place_2*dplace_2
+                t179 = t177 + t178
+                t180 = normal_2*t179
+                t181 = (dplace_1*dpush_by_place_1 + dplace_2*dpush_by_place_2 +
                     dpush_by_rate_1*drate_1 + dpush_by_rate_2*drate_2)
-                t178 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
+                t182 = (dfriction_1_by_place_1*dplace_1 + dfriction_1_by_place_2*dplace_2 +
                     dfriction_1_by_rate_1*drate_1 + dfriction_1_by_rate_2*drate_2)
-                t179 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
+                t183 = (dfriction_2_by_place_1*dplace_1 + dfriction_2_by_place_2*dplace_2 +
                     dfriction_2_by_rate_1*drate_1 + dfriction_2_by_rate_2*drate_2)
-                t180 = (-friction_1*t176 - friction_2*normal_2*(2*t169 + 2*t170) - normal_2*t177 -
-                    push*t171 - t157*t178 + t158*t179 - t171*t172)
-                t181 = (-friction_2*normal_1*t171 - friction_2*t176 - normal_1*t177 - push*t175 -
-                    t157*t179 + t161*t178 - t172*(2*t173 + 2*t174))
-                t182 = (-Rb_cos*t168 - Rb_cos*t181 + Rb_sin*t167 + Rb_sin*t180 + t159*t160 +
-                    t162*t163)
-                t183 = Rb_cos*t167 + Rb_cos*t180 + Rb_sin*t168 + Rb_sin*t181 - t159*t163 + t160*t162
-                t184 = xa_y - xb_y
-                t185 = Rb_cos*t184
-                t186 = xa_x - xb_x
-                t187 = -Rb_sin*t186 + t185
-                t188 = dxa_x - dxb_x
-                t189 = dxa_y - dxb_y
-                t190 = Rb_cos*t186
-                t191 = Rb_sin*t184
-                t192 = -t190 - t191
-                dFp_x = -t182
-                dFp_y = t183
-                dg[n] = t182
-                dg[n + 1] = -t183
-                dg[n + 2] = (t159*(-Rb_cos*t188 + Rb_sin*dthb_z*t186 - Rb_sin*t189 - dthb_z*t185)
-                    + t162*(Rb_cos*t189 - Rb_sin*t188 - dthb_z*t190 - dthb_z*t191) + t167*t192 +
-                    t168*t187 + t180*t192 + t181*t187)
+                t184 = (-friction_1*t180 - friction_2*normal_2*(2*t173 + 2*t174) - normal_2*t181 -
+                    push*t175 - t161*t182 + t162*t183 - t175*t176)
+                t185 = (-friction_2*normal_1*t175 - friction_2*t180 - normal_1*t181 - push*t179 -
+                    t161*t183 + t165*t182 - t176*(2*t177 + 2*t178))
+                t186 = (-Rb_cos*t172 - Rb_cos*t185 + Rb_sin*t171 + Rb_sin*t184 + t163*t164 +
+                    t166*t167)
+                t187 = Rb_cos*t171 + Rb_cos*t184 + Rb_sin*t172 + Rb_sin*t185 - t163*t167 + t164*t166
+                t188 = xa_y - xb_y
+                t189 = Rb_cos*t188
+                t190 = xa_x - xb_x
+                t191 = -Rb_sin*t190 + t189
+                t192 = dxa_x - dxb_x
+                t193 = dxa_y - dxb_y
+                t194 = Rb_cos*t190
+                t195 = Rb_sin*t188
+                t196 = -t194 - t195
+                dFp_x = -t186
+                dFp_y = t187
+                dg[n] = t186
+                dg[n + 1] = -t187
+                dg[n + 2] = (t163*(-Rb_cos*t192 + Rb_sin*dthb_z*t190 - Rb_sin*t193 - dthb_z*t189)
+                    + t166*(Rb_cos*t193 - Rb_sin*t192 - dthb_z*t194 - dthb_z*t195) + t171*t196 +
+                    t172*t191 + t184*t196 + t185*t191)
                 # differential: force on the point in frame axes
-                t193 = R0_cos*dth0_z
-                t194 = R0_sin*dth0_z
-                dfp_x = -Fp_x*t194 + Fp_y*t193 + R0_cos*dFp_x + R0_sin*dFp_y
-                dfp_y = -Fp_x*t193 - Fp_y*t194 + R0_cos*dFp_y - R0_sin*dFp_x
+                t197 = R0_cos*dth0_z
+                t198 = R0_sin*dth0_z
+                dfp_x = -Fp_x*t198 + Fp_y*t197 + R0_cos*dFp_x + R0_sin*dFp_y
+                dfp_y = -Fp_x*t197 - Fp_y*t198 + R0_cos*dFp_y - R0_sin*dFp_x
                 # differential: forces conjugate to the local coordinates: positions
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     Phi_positionx_x, Phi_positionx_y = Phi[2*i3], Phi[2*i3 + 1]
                     Phi_positiony_x, Phi_positiony_y = Phi[2*(i3 + 1)], Phi[2*(i3 + 1) + 1]
-                    ds[i3] = Phi_positionx_x*dfp_x + Phi_positionx_y*dfp_y
-                    ds[i3 + 1] = Phi_positiony_x*dfp_x + Phi_positiony_y*dfp_y
+                    bent_x_positionx = bent_x[i3]
+                    bent_y_positionx = bent_y[i3]
+                    bent_x_positiony = bent_x[i3 + 1]
+                    bent_y_positiony = bent_y[i3 + 1]
+                    dbent_x_positionx = dbent_x[i3]
+                    dbent_y_positionx = dbent_y[i3]
+                    dbent_x_positiony = dbent_x[i3 + 1]
+                    dbent_y_positiony = dbent_y[i3 + 1]
+                    ds[i3] = (dbent_x_positionx*fp_x + dbent_y_positionx*fp_y +
+                        dfp_x*(Phi_positionx_x + bent_x_positionx) + dfp_y*(Phi_positionx_y +
+                        bent_y_positionx))
+                    ds[i3 + 1] = (dbent_x_positiony*fp_x + dbent_y_positiony*fp_y +
+                        dfp_x*(Phi_positiony_x + bent_x_positiony) + dfp_y*(Phi_positiony_y +
+                        bent_y_positiony))
                 # differential: forces conjugate to the local coordinates: rotations
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j
                     Phi_rotationz_x, Phi_rotationz_y = Phi[2*j3], Phi[2*j3 + 1]
-                    ds[j3] = Phi_rotationz_x*dfp_x + Phi_rotationz_y*dfp_y
+                    bent_x_rotationz = bent_x[j3]
+                    bent_y_rotationz = bent_y[j3]
+                    dbent_x_rotationz = dbent_x[j3]
+                    dbent_y_rotationz = dbent_y[j3]
+                    ds[j3] = (dbent_x_rotationz*fp_x + dbent_y_rotationz*fp_y +
+                        dfp_x*(Phi_rotationz_x + bent_x_rotationz) + dfp_y*(Phi_rotationz_y +
+                        bent_y_rotationz))
                 # differential: forces conjugate to the local coordinates: modes
                 for k in range(MODES, n):
                     Phi_mode_x, Phi_mode_y = Phi[2*k], Phi[2*k + 1]
-                    ds[k] = Phi_mode_x*dfp_x + Phi_mode_y*dfp_y
+                    bent_x_mode = bent_x[k]
+                    bent_y_mode = bent_y[k]
+                    dbent_x_mode = dbent_x[k]
+                    dbent_y_mode = dbent_y[k]
+                    ds[k] = (dbent_x_mode*fp_x + dbent_y_mode*fp_y + dfp_x*(Phi_mode_x +
+                        bent_x_mode) + dfp_y*(Phi_mode_y + bent_y_mode))
                 # differential: forces on the frame: elastic (30) and inertia (57)
                 dF_x = dF_y = 0.0
                 dW_z = 0.0
@@ -934,9 +1057,9 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     i3 = 2*i
                     fit = fits[i]
                     X_x, X_y = X[i3], X[i3 + 1]
-                    t195 = dwp_z*fit
-                    dF_x += -X_y*t195
-                    dF_y += X_x*t195
+                    t199 = dwp_z*fit
+                    dF_x += -X_y*t199
+                    dF_y += X_x*t199
                 # differential: force on the nodes in frame axes, (30), (57)
                 for i in range(N_POSITIONS):
                     i3 = 2*i
@@ -944,18 +1067,18 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
                     X_x, X_y = X[i3], X[i3 + 1]
                     alpha = alphas[i]
                     df_x, df_y = ds[i3], ds[i3 + 1]
-                    t196 = dwp_z*fit
-                    dh[i3] = X_y*t196 + alpha*dF_x + df_x
-                    dh[i3 + 1] = -X_x*t196 + alpha*dF_y + df_y
+                    t200 = dwp_z*fit
+                    dh[i3] = X_y*t200 + alpha*dF_x + df_x
+                    dh[i3 + 1] = -X_x*t200 + alpha*dF_y + df_y
                 # differential: force on the nodes
                 for i in range(N_POSITIONS):
                     i3 = 2*i
                     h_x, h_y = h[i3], h[i3 + 1]
                     dh_x, dh_y = dh[i3], dh[i3 + 1]
-                    t197 = R0_cos*dth0_z
-                    t198 = R0_sin*dth0_z
-                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t198 - h_y*t197
-                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t197 - h_y*t198
+                    t201 = R0_cos*dth0_z
+                    t202 = R0_sin*dth0_z
+                    dg[i3] = R0_cos*dh_x - R0_sin*dh_y - h_x*t202 - h_y*t201
+                    dg[i3 + 1] = R0_cos*dh_y + R0_sin*dh_x + h_x*t201 - h_y*t202
                 # differential: moment on the nodes, (30), (57)
                 for j in range(N_ROTATIONS):
                     j3 = ROTATIONS + j

@@ -1,10 +1,11 @@
 """Contact of a point inside a reduced body with a surface that another node carries.
 
-The point is where the recovery of the body's FE model has it: with the frame ``x_0, R_0``, the
-local coordinates y and the rows Phi of the recovery that belong to the point,
+The point is where the recovery of the body's FE model has it, as points of paths are: with the
+frame ``x_0, R_0``, the local coordinates y, the rows Phi_y of the recovery that belong to the
+point, and its rows of the followers ``eta_b = y . Q_b y / 2``, ``H = Phi_eta_b Q_b``,
 
-    x = x_0 + R_0 r,                     r = X + Phi y
-    R_0^T x' = x_0' + Om_0 x r + Phi y'  (velocities in axes of the frame)
+    x = x_0 + R_0 r,                     r = X + Phi_y y + y . H y / 2
+    R_0^T x' = x_0' + Om_0 x r + Phi y', Phi = Phi_y + H y      (velocities in axes of the frame)
 
 x_0, R_0 and y are functions of the unknowns. Friction and contact are those of a point of a node,
 see `contacts`. A force F on the point acts on what the point moves with, ``f = R_0^T F``:
@@ -14,16 +15,18 @@ see `contacts`. A force F on the point acts on what the point moves with, ``f = 
 so its power is that on the unknowns, and in a rigid motion of body and surface it does no work.
 """
 
+import itertools
 from functools import cache
 from typing import NamedTuple
 
 import sympy as sp
 
 from sebody.contract.layout import Part
-from sebody.derive.form.arrays import Place, constant
+from sebody.derive.form.arrays import Place, constant, scratch
 from sebody.derive.form.counts import i3, j3, k
 from sebody.derive.form.spaces import AXES, Quantity, Space
-from sebody.derive.form.steps import Invert, Solve, Stage, Step
+from sebody.derive.form.steps import Invert, Product, Solve, Stage, Step
+from sebody.derive.formulas import arrays
 from sebody.derive.formulas.contacts import contact
 from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.elastic import conjugate_to
@@ -43,6 +46,14 @@ from sebody.derive.symbolic.variation import check_same
 
 SHAPES = Part("Phi", ("n", "D"), "displacement of the point by local coordinates, a row each")
 POINT = Part("point", ("D",), "the point in the undeformed frame [length]")
+SECOND = tuple(Part(f"H{axis}", ("n", "n"), f"second derivatives of the displacement along {axis}",
+                    columns=True) for axis in AXES)
+BENT = tuple(scratch(f"bent_{axis}") for axis in AXES)      # H y
+
+
+def second(planar: bool) -> tuple[Part, ...]:
+    """Constants of second order."""
+    return SECOND[:2] if planar else SECOND
 
 
 class Steps(NamedTuple):
@@ -79,21 +90,44 @@ def _force(q: Quantities) -> Quantity:
     return q.space.quantity("Fp", "vector", "element")
 
 
-def _shapes(q: Quantities, home: str) -> list[sp.Matrix]:
-    """Displacement of the point by each coordinate of a position, of a rotation or by a mode."""
-    axes = {"position": AXES[:2] if q.space.planar else AXES,
+def _products(q: Quantities) -> tuple[Product, ...]:
+    """Changes of the shapes as the body deforms."""
+    return tuple(Product(f"change of the shapes, {part.name} y", constant(part), arrays.y, bent)
+                 for part, bent in zip(second(q.space.planar), BENT, strict=False))
+
+
+def _bent(q: Quantities, home: str) -> list[list[Quantity]]:
+    """These changes for each coordinate of a position, of a rotation or for a mode, by axes."""
+    first = {"position": i3, "rotation": j3, "mode": k}[home]
+    return [[q.space.quantity(f"{bent.name}_{home}{axis}", "scalar", home, bent, Place(first + c))
+             for bent in BENT[:len(second(q.space.planar))]]
+            for c, axis in enumerate(_axes(q, home))]
+
+
+def _axes(q: Quantities, home: str) -> tuple[str, ...]:
+    return {"position": AXES[:2] if q.space.planar else AXES,
             "rotation": AXES[2:] if q.space.planar else AXES, "mode": ("",)}[home]
+
+
+def _shapes(q: Quantities, home: str, part: sp.Expr = sp.S.One) -> list[sp.Matrix]:
+    """Displacement of the point by each coordinate of a position, of a rotation or by a mode.
+
+    With a `part` of its change by the deformation.
+    """
     first = {"position": i3, "rotation": j3, "mode": k}[home]
     size = 2 if q.space.planar else 3
-    return [q.space.quantity(f"Phi_{home}{axis}", "vector", home, constant(SHAPES),
-                             Place(size * (first + c))).symbols for c, axis in enumerate(axes)]
+    shapes = [q.space.quantity(f"Phi_{home}{axis}", "vector", home, constant(SHAPES),
+                               Place(size * (first + c))).symbols
+              for c, axis in enumerate(_axes(q, home))]
+    return [shape + part * sp.Matrix([*(one.symbols[0] for one in bent), 0][:3])
+            for shape, bent in zip(shapes, _bent(q, home), strict=True)]
 
 
-def _recovered(q: Quantities, result: Quantity, of: dict[str, Quantity], what: str
-               ) -> tuple[Stage, ...]:
+def _recovered(q: Quantities, result: Quantity, of: dict[str, Quantity], what: str,
+               part: sp.Expr = sp.S.One) -> tuple[Stage, ...]:
     """``Phi y``, or of rates, summed over positions, rotations and modes."""
     return tuple(Stage(f"{what} of the point by {home}s", home, adds=((result, sum(
-        (shape * one for shape, one in zip(_shapes(q, home), quantity.kept, strict=True)),
+        (shape * one for shape, one in zip(_shapes(q, home, part), quantity.kept, strict=True)),
         sp.zeros(3, 1))),), continues=home != "position") for home, quantity in of.items())
 
 
@@ -104,7 +138,9 @@ def _point(q: Quantities, frame: Frame) -> tuple[tuple[Step, ...], tuple[Step, .
     R0, arm = q.R0.symbols, q.space.quantity("rp", "vector", "element").symbols
     place = (local_displacement(q),
              Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
-             *_recovered(q, w, {"position": q.u, "rotation": q.psi, "mode": q.ym}, "displacement"),
+             *_products(q),
+             *_recovered(q, w, {"position": q.u, "rotation": q.psi, "mode": q.ym}, "displacement",
+                         sp.S.Half),
              Stage("arm of the point in the frame", "element", sets=((r, X.symbols + w.symbols),)),
              Stage("place of the point", "element",
                    sets=((a.state, q.x0.symbols + R0 * arm),)))
@@ -162,4 +198,8 @@ def _moved(q: Quantities, frame: Frame, chain: Linearizer, place: tuple[Step, ..
         Stage("differential: internal modes", "mode", sets=((d(q.ym), d(q.qm).symbols),))]
     for quantity in (q.psi, q.ym, q.beta, q.beta0):
         chain.move(quantity)
-    return (*steps, *frame.differentials, *(chain.step(step) for step in (*others, *velocity)))
+    for home in ("position", "rotation", "mode"):
+        for quantity in itertools.chain(*_bent(q, home)):
+            chain.move(quantity)
+    return (*steps, *frame.differentials, *(step.differential() for step in _products(q)),
+            *(chain.step(step) for step in (*others, *velocity) if step not in _products(q)))

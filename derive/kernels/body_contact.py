@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from sebody.contract.layout import FRAME_CONSTANTS, Part
 from sebody.contract.names import body_contact_kind
-from sebody.derive.formulas.body_contact import POINT, SHAPES, Steps, body_contact
+from sebody.derive.formulas.body_contact import POINT, SHAPES, Steps, body_contact, second
 from sebody.derive.formulas.frames.frame import FrameOption
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
@@ -36,7 +36,7 @@ class BodyContact(NamedTuple):
     @property
     def declared(self) -> tuple[Part, ...]:
         """Constants beyond those of every frame and those of the law."""
-        return (*self.option.traits.constants, SHAPES, POINT)
+        return (*self.option.traits.constants, *second(self.layout.planar), SHAPES, POINT)
 
 
 def body_contact_kernel(name: str) -> BodyContact:

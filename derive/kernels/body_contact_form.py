@@ -51,7 +51,7 @@ LAW = pointed("law")        # its constants
 def body_contact_form(kernel: BodyContact) -> Kernel:
     """The kernel as statements."""
     steps, planar = kernel.steps, kernel.layout.planar
-    lowering = Lowering(steps.q.space, kernel.names)
+    lowering = Lowering(steps.q.space, kernel.names, arrows=False)
     own = _Law(steps.law, planar)
     point, prepared = lowering.statements(steps.point), lowering.statements(steps.prepared)
     law, start = own.forces(lowering.temporaries)

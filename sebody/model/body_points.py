@@ -62,7 +62,9 @@ def label_place(recovery: Recovery, label: str) -> int | None:
 def point_constants(point: BodyPoint) -> dict[str, ArrayLike]:
     """Where a point is in the frame of its body, and its displacements by local coordinates."""
     recovery, held = _recovery(point), held_points(point.body)
-    return {"Phi": shapes(point), "point": recovery.points[point.place] - point.body.alpha @ held}
+    second = dict(zip(("Hx", "Hy", "Hz"), second_derivatives(point), strict=False))
+    return {"Phi": shapes(point), "point": recovery.points[point.place] - point.body.alpha @ held,
+            **second}
 
 
 def shapes(point: BodyPoint) -> NDArray:
@@ -70,6 +72,24 @@ def shapes(point: BodyPoint) -> NDArray:
     n = len(point.body.reduced.stiffness)
     displacements: NDArray = _recovery(point).displacement(np.eye(n), [point.place])[:, 0]
     return displacements
+
+
+def second_derivatives(point: BodyPoint) -> NDArray:
+    """Those of the displacements of a point by local coordinates, (D, n, n): of what follows."""
+    Q, n = followers_of(point.body), len(point.body.reduced.stiffness)
+    unit = np.eye(n + len(Q))[n:]
+    by_followers = _recovery(point).displacement(unit, [point.place])[:, 0]
+    second: NDArray = np.einsum("bd,bij->dij", by_followers, Q)
+    return second
+
+
+def followers_of(body: Superelement) -> NDArray:
+    """Matrices Q_b of the coordinates that follow in second order, (m, n, n)."""
+    n, invariants, recovery = len(body.reduced.stiffness), body.invariants, body.reduced.recovery
+    assert recovery is not None
+    if invariants is None or recovery.shapes.shape[1] < n + invariants.slaved:
+        return np.zeros((0, n, n))
+    return invariants.Q
 
 
 def start_place(point: BodyPoint) -> NDArray:

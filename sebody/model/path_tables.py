@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.model.body_points import held_points
+from sebody.model.body_points import followers_of, held_points
 from sebody.model.parts import Node, Path, PathPiece, Superelement
 from sebody.reduction.recovery import Recovery
 
@@ -70,14 +70,6 @@ def recovery_of(body: Superelement) -> Recovery:
     """Its recovery, which bodies of paths have."""
     assert body.reduced.recovery is not None
     return body.reduced.recovery
-
-
-def followers_of(body: Superelement) -> NDArray:
-    """Matrices Q_b of the coordinates that follow in second order, (m, n, n)."""
-    n, invariants = len(body.reduced.stiffness), body.invariants
-    if invariants is None or recovery_of(body).shapes.shape[1] < n + invariants.slaved:
-        return np.zeros((0, n, n))
-    return invariants.Q
 
 
 def _ends(along: NDArray, turned: NDArray) -> NDArray | None:

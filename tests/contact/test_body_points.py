@@ -115,6 +115,36 @@ def cantilever(elements, gap, force, stiffness, exponent, restitution, node, cou
     return model, K, M, load, 3 * (node - 1) + 1
 
 
+@pytest.mark.parametrize("flat", [True, False])
+def test_points_of_bent_bodies_are_where_fields_show_them(flat):
+    """In second order, by the shortening of a clamped beam with a force at its tip.
+
+    This is the integral of half of the slope's square, and four times as large for twice the force;
+    the contact counts its gap along the beam.
+    """
+    F, found = 0.5 * 3 * 2.1e11 * 0.03 * 0.02**3 / 12 * 0.02, []     # the tip gives way by 0.01 L
+    for force in (F, 2 * F):
+        model, turn = Model(planar=flat), np.eye(3) if flat else TURN
+        at = (lambda x: np.array([x, 0.0])) if flat else (lambda x: SHIFT + x * TURN[:, 0])
+        ends = model.node("root", at(0.0)), model.node("tip", at(1.0))
+        section = rectangle(0.02, 0.03, 2.1e11, 0.0, 7800.0)
+        model.beam("beam", ends, section, elements=16, bodies=1, modes=6,
+                   **({} if flat else {"up": TURN[:, 1]}))
+        model.fix(ends[0])
+        along = turn[:2, 0] if flat else turn[:, 0]
+        model.force(ends[1], -force * (turn[:2, 1] if flat else turn[:, 1]))
+        model.contact("beam.node12", on=plane(along, at(-1.0)), stiffness=1e3, name="ruler")
+        result = equilibrium(model)
+        gap, place = result["ruler.gap"][-1], result["beam.node12.position"][-1]
+        assert gap == pytest.approx((place - at(-1.0)) @ along, abs=1e-12)
+        found.append(1.75 - gap)
+    EI = 2.1e11 * 0.03 * 0.02**3 / 12
+    x = np.linspace(0.0, 0.75, 2001)
+    shortened = np.trapezoid((F / EI * (x - x * x / 2))**2 / 2, x)
+    assert found[0] == pytest.approx(shortened, rel=1e-2)
+    assert found[1] == pytest.approx(4 * found[0], rel=1e-2)
+
+
 def test_equilibrium_of_a_full_finite_element_model():
     """With all modes a linear contact presses as in the full model, solved by NumPy."""
     model, K, _, load, at = cantilever(6, 1e-6, 0.05, 2e4, 1.0, 1.0, 3)

@@ -34,6 +34,7 @@ from sebody.verify.check.superelement_cases import Nodes, nodes_of, placed_case
 
 FRAME = 9       # numbers of the frame, before those that the contact keeps
 SURFACES = ("plane", 1.0), ("round", 0.0)   # with values of the constant `flat`
+BENT = "Hx", "Hy", "Hz"     # constants of second order
 KINDS = 3       # of nodes, of those that general kernels are checked with
 
 
@@ -55,6 +56,9 @@ def body_contact_case(module: ModuleType, seed: int, nodes: Nodes, flat: float) 
     given = {part.name: values[part.name] if part.name in values else 1.0 + 0.5 * random.uniform(
         -1, 1, size=[counts.get(size, size) for size in part.shape]) for part in module.CONSTANTS}
     small = {name: 0.5 * random.normal(size=given[name].shape) for name in ("Phi", "point")}
+    for name in BENT[:d]:
+        one = 0.2 * random.normal(size=given[name].shape)
+        small[name] = one + one.T
     # weak damping: a contact that opens fast has no force
     return with_constants(case, given | small | {"flat": flat, "damping": 0.1 * given["damping"]})
 
@@ -76,7 +80,8 @@ def _depth(case: Case) -> float:
     """How deep the point is, by rotations of SciPy."""
     body, c, d = _body(case), constants_of(case), case.dimension
     R0 = frame_rotation(body).as_matrix()[:d, :d]
-    r = c["point"] + local_coordinates(body) @ c["Phi"]
+    y = local_coordinates(body)
+    r = c["point"] + y @ c["Phi"] + [y @ c[name] @ y / 2 for name in BENT[:d]]
     origin = c["alphas"] @ body.q[:body.first_rotation].reshape(-1, d)
     turn = (Rotation.from_rotvec([0, 0, case.q[-1]]).as_matrix() if case.planar
             else case.R[-9:].reshape(3, 3))[:d, :d]
