@@ -34,8 +34,9 @@ def refuse_numbers(model: Mechanism, one: Element) -> None:
     if "static" in c:
         checked_friction(what, c["coefficient"], c["static"], c["bristle"] or None, None,
                          c["speed"])
-    if "preload" in c:
+    if "radius" in c and "preload" in c:
         inputs.number(c["radius"], f"{what}: radius", above=0)
+    if "preload" in c:
         inputs.number(c["preload"], f"{what}: preload", least=0)
     if "ratio" in c:
         checked_ratio(what, c["ratio"])
@@ -50,6 +51,8 @@ def refuse_numbers(model: Mechanism, one: Element) -> None:
 def _measured(one: Element, c: Mapping) -> float:
     """Angle, way or distance that a stop limits, at the start."""
     kind = one.kind.removeprefix("planar_")
+    if kind == "way_stop":
+        return float(one.dof_blocks[0].start[0])
     if kind == "turn_stop":
         turns = [_turn(place) for place in one.dof_blocks]
         if "d" not in c:

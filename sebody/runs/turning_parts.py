@@ -128,8 +128,9 @@ class Mechanics:
         return self._with_centres(members | self._geared(line, members))
 
     def _counts(self, dof_block: DofBlock, line: Line) -> bool:
-        """Tell whether turning about a line moves a block."""
-        return dof_block.rotational or line.away(dof_block.start) > self._near
+        """Tell whether turning about a line moves a block; ways along paths it does not."""
+        return dof_block.rotational or (dof_block.start.size == self.model.dimension
+                                        and line.away(dof_block.start) > self._near)
 
     def _tied(self, line: Line) -> _Groups:
         """Groups of blocks that turn about a line together."""
