@@ -55,6 +55,7 @@ OPAQUE = _function("abi", "opaque", Gives.WHOLE, number=WHOLE)
 PACKED_ROOM = _function("packed_products", "packed_room", Gives.WHOLE, count=WHOLE, **_SIZES)
 
 # products
+TABLE_LAW = _function("tables", "table_law", Gives.REALS, table=READ, u=REAL, order=WHOLE)
 COLUMNS_TIMES = _function("dense", "columns_times", A=READ, x=READ, out=WRITE, **_SIZES)
 COLUMNS_TIMES_ALL = _function("dense", "columns_times_all", A=READ, x=READ, y=READ, z=READ,
                               of_x=WRITE, of_y=WRITE, of_z=WRITE, **_SIZES)

@@ -15,6 +15,8 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from sebody.derive.form.arrays import View, pointed
+from sebody.derive.form.functions import TABLE_LAW
 from sebody.derive.form.spaces import Quantity, Space
 from sebody.derive.formulas.elastic import conjugate_to
 from sebody.derive.symbolic.rotations import cross
@@ -48,6 +50,27 @@ class near_angle(sp.Function):  # noqa: N801  (as functions of SymPy)
     def fdiff(self, argindex: int = 1) -> sp.Expr:
         """Whole turns do not change."""
         return sp.Integer(argindex == 1)
+
+
+class tabled(sp.Function):  # noqa: N801  (as functions of SymPy)
+    """``tabled(u, order, first)``: a law by a table whose numbers begin there among the constants.
+
+    Of order 0 the integral of the force, whose derivatives are the force (1) and its slope (2).
+    """
+
+    nargs = 3
+    written_out = True
+    calls = TABLE_LAW
+
+    def fdiff(self, argindex: int = 1) -> sp.Expr:
+        """The next order."""
+        u, order, first = self.args
+        return tabled(u, order + 1, first)
+
+    @property
+    def table(self) -> View:
+        """Where the numbers are."""
+        return pointed("constant").at(int(self.args[2]))
 
 
 def whole_turns(expr: sp.Expr) -> sp.Expr:

@@ -12,6 +12,7 @@ from sebody.derive.formulas import (
     rigid,
     ropes,
     stops,
+    table_springs,
 )
 
 SMOOTH = {          # joints, bodies and forces whose column is written in the unknowns
@@ -49,6 +50,9 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "mode_force": forces.mode_force,
     "spring": lambda: forces.spring(False),
     "planar_spring": lambda: forces.spring(True),
+    **{"planar_" * planar + f"table_{make.__name__}": partial(make, planar)
+       for make in (table_springs.spring, table_springs.torsion_spring)
+       for planar in (False, True)},
     "torsion_spring": lambda: forces.torsion_spring(False),
     "planar_torsion_spring": lambda: forces.torsion_spring(True),
     "bushing": lambda: forces.bushing(False),

@@ -93,6 +93,9 @@ def _in_expression(expression: sp.Expr) -> Iterator[Any]:
     for node in sp.preorder_traversal(expression):
         if isinstance(node, Entry):
             yield from _parts(node)
+        elif hasattr(node, "calls"):
+            yield node.calls
+            yield from _parts(node.table)
         elif isinstance(node, sp.Function) and not hasattr(node, "written_out"):
             yield type(node).__name__
         elif isinstance(node, sp.Pow) and abs(node.exp) == ROOT:

@@ -98,7 +98,7 @@ def check_axes(model: Mechanism, elements: Iterable[Element] | None = None) -> N
     turning, sliding = _between(model, "rotation"), _between(model, "position")
     for one in (*model.loads, *model.constraints) if elements is None else elements:
         kind = one.kind.removeprefix("planar_")
-        if kind in ("torsion_spring", "turn_drive"):
+        if kind in ("torsion_spring", "table_torsion_spring", "turn_drive"):
             a, b = (place.node for place in one.attachments)
             axis = None if model.planar else np.cross(
                 one.vector("n"), one.vector("m")) + 0.0       # no -0

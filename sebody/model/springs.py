@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from os import PathLike
 from pathlib import Path
-from typing import NamedTuple, Unpack
+from typing import NamedTuple, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,13 +20,20 @@ from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import check_together, pair
 from sebody.model.parts import Attachment, Element, Joint, Node, positions, rotations
 from sebody.model.shafts import shaft_axes
+from sebody.model.spring_laws import Given, Law
+
+_NO_CUBIC = "force, gap, tension_only, preload or a table"
 
 
 def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = None,
-           stiffness: float = 0.0, damping: float = 0.0, length: float | None = None,
-           cubic: float = 0.0, name: str | None = None,
-           **acting: Unpack[Acting]) -> Element:
+           stiffness: float = 0.0, damping: float | Given = 0.0, length: float | None = None,
+           cubic: float = 0.0, name: str | None = None, force: Given | None = None,
+           gap: float = 0.0, tension_only: bool = False, preload: float = 0.0,
+           between: ArrayLike | None = None, **acting: Unpack[Acting]) -> Element:
     """Spring and damper between two points: ``F = k u + k3 u^3 + c u'``, u the stretch.
+
+    In place of the stiffness a `force` may be given by a table of the stretch, and a `damping` by
+    one of its rate: monotone cubics between the rows, of which the energy is the exact integral.
 
     Parameters
     ----------
@@ -36,6 +44,17 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
         k, c and k3 [force/length, force time/length, force/length^3].
     length : float, optional
         Length without force [length], along a path the way; that of the start by default.
+    force, damping : table, path of a CSV file, or function
+        Rows (stretch, force) or (rate, force), 2 to 65; beyond the ends with the slope there. A
+        function is read at 63 places.
+    gap : float
+        Stretch, of either sign, that takes no force [length].
+    tension_only : bool
+        Whether it never pushes, as a rope does.
+    preload : float
+        Force that is added: that without stretch [force].
+    between : (2,)
+        Of a function `force`: stretches between which it is read.
     **acting
         `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
@@ -46,7 +65,10 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
     """
     joint = _joint_on_path(model, node)
     if joint is not None and to is None:
-        return _way_spring(model, joint, stiffness, damping, length, cubic, name)
+        if Special(force, damping, gap, tension_only, preload, between).given:
+            raise InputError(f"spring of {joint.name!r} acts along its path: give it stiffness, "
+                             "cubic and damping, tables are of springs between nodes")
+        return _way_spring(model, joint, stiffness, cast(float, damping), length, cubic, name)
     if joint is not None:
         raise InputError(f"spring of {joint.name!r} acts along its path and has the node "
                          f"{getattr(to, 'name', to)!r}: leave to= out, or give two nodes")
@@ -59,6 +81,13 @@ def spring(model: Mechanism, node: Joint | Node | str, to: Node | str | None = N
         raise InputError(f"spring: nodes {a.name!r} and {b.name!r} coincide, so it has "
                          "no direction: use a bushing")
     length = start if length is None else length
+    law = Special(force, damping, gap, tension_only, preload, between)
+    if law.given:
+        _check("spring", length=length)
+        tables = law.tables(f"spring at {a.name!r}", stiffness, cubic)
+        return _add(model, name, "spring", a, positions(a, b), {"length": length} | tables,
+                    "table_spring")
+    damping = cast(float, damping)
     _check("spring", stiffness=stiffness, cubic=cubic, damping=damping, length=length)
     return _add(model, name, "spring", a, positions(a, b),
                 {"k": stiffness, "k3": cubic, "c": damping, "length": length})
@@ -84,10 +113,11 @@ def _way_spring(model: Mechanism, joint: Joint, stiffness: float, damping: float
 
 
 def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float = 0.0,
-                   damping: float = 0.0, axis: ArrayLike | None = None,
+                   damping: float | Given = 0.0, axis: ArrayLike | None = None,
                    to: Node | str | None = None, rest: float = 0.0, cubic: float = 0.0,
-                   name: str | None = None,
-                   **acting: Unpack[Acting]) -> Element:
+                   name: str | None = None, force: Given | None = None, gap: float = 0.0,
+                   tension_only: bool = False, preload: float = 0.0,
+                   between: ArrayLike | None = None, **acting: Unpack[Acting]) -> Element:
     """Spring and damper about the axis of a revolute joint: ``M = k u + k3 u^3 + c u'``.
 
     Turns are counted: in space from step to step, so in one step less than half a turn.
@@ -104,6 +134,9 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
         there is none.
     rest : float
         Angle of `node` against `to` without moment, zero at the start [rad].
+    force, damping, gap, tension_only, preload, between
+        As of `spring`, of the angle less `rest` and the moment that takes it back: a positive
+        moment is against a positive angle.
     **acting
         `until`, `from_`: when it acts, see `sebody.model.acting.Acting`.
 
@@ -117,12 +150,18 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
     a, b, vectors = about(model, node, axis, to, what)
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     warn_of_degrees(f"torsion spring at {a.name!r}", rest=rest)
-    _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
-    constants: dict[str, float | NDArray] = {"k": stiffness, "k3": cubic, "c": damping,
-                                             "rest": rest}
+    law = Special(force, damping, gap, tension_only, preload, between)
+    constants: dict[str, float | NDArray] = {"rest": rest}
+    if law.given:
+        constants |= law.tables(f"{what} at {a.name!r}", stiffness, cubic)
+    else:
+        damping = cast(float, damping)
+        _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
+        constants |= {"k": stiffness, "k3": cubic, "c": damping}
     if vectors:
         constants |= zip(("n", "m"), vectors[1:], strict=True)
-    spring = _add(model, name, what, a, rotations(a, b), constants)
+    spring = _add(model, name, what, a, rotations(a, b), constants,
+                  "table_torsion_spring" if law.given else None)
     check_axes(model, [spring])
     return spring
 
@@ -322,6 +361,64 @@ def _bushing_axes(model: Mechanism, a: Node, rotation: ArrayLike | None, axis: A
     if not length > 0.0:
         raise InputError(f"bushing at {a.name!r}: axis has no length: give the shaft's direction")
     return shaft_axes(third / length)
+
+
+class Special(NamedTuple):
+    """What makes a spring one of tables."""
+
+    force: Given | None
+    damping: float | Given
+    gap: float
+    tension_only: bool
+    preload: float
+    between: ArrayLike | None
+
+    @property
+    def given(self) -> bool:
+        """Tell whether any of it is given: else a spring has coefficients alone."""
+        left_out = all(np.isscalar(one) and one == 0
+                       for one in (self.gap, self.tension_only, self.preload))
+        return (not left_out or self.force is not None or _is_table(self.damping)
+                or self.between is not None)
+
+    def tables(self, what: str, stiffness: float, cubic: float) -> dict[str, NDArray]:
+        """The numbers of both tables, by the names of the kernel's constants."""
+        if self.force is None:
+            _check(what, stiffness=stiffness)
+            law = Law.straight(stiffness)
+            if self.between is not None:
+                raise InputError(f"{what}: between= is of a function: give force=, or leave it out")
+        else:
+            if stiffness:
+                raise InputError(f"{what} has a stiffness and a force: give one of them")
+            law = Law.of(self.force, self.between, f"{what}: force")
+        if cubic:
+            raise InputError(f"{what} has cubic= and {_NO_CUBIC}: put the cubic in force=")
+        if gap := inputs.number(self.gap, f"{what}: gap", least=0):
+            law = law.with_gap(gap, what)
+        if preload := inputs.number(self.preload, f"{what}: preload"):
+            law = law._replace(forces=law.forces + preload)
+        if inputs.flag(self.tension_only, f"{what}: tension_only"):
+            law = law.pulling(what)
+        if not _is_table(self.damping):
+            damper = Law.straight(inputs.number(self.damping, f"{what}: damping", least=0))
+        elif callable(self.damping):
+            raise InputError(f"{what}: damping is a function: give a table of rows (rate, force)")
+        else:
+            damper = Law.of(self.damping, None, f"{what}: damping")
+            if (damper.forces * damper.places < 0.0).any():
+                raise InputError(f"{what}: damping has rows whose force drives the rate: give "
+                                 "forces of the sign of the rate")
+        return {"force": law.packed(), "damper": damper.packed()}
+
+
+def _is_table(damping: float | Given) -> bool:
+    """Tell a table, a file or a function from what is to be a number."""
+    if isinstance(damping, str):
+        return bool(Path(damping).suffix)
+    rows = isinstance(damping, list | tuple | np.ndarray) and len(damping) > 0
+    return callable(damping) or isinstance(damping, PathLike) or (
+        rows and np.iterable(damping[0]))   # type: ignore[index]
 
 
 def _add(model: Mechanism, name: str | None, what: str, a: Node,

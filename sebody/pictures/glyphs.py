@@ -11,7 +11,7 @@ from sebody.model.parts import Joint, Node
 from sebody.model.shafts import is_unbalance
 from sebody.pictures.wireframe import neighbours
 
-SPRINGS = "spring", "planar_spring"
+SPRINGS = "spring", "planar_spring", "table_spring", "planar_table_spring"
 SLIDING = "slider", "prismatic", "cylindrical", "planar", "path"
 ABOUT_Z = np.eye(3)[:, [2, 0, 1]]       # axes whose first direction is z
 

@@ -282,6 +282,19 @@ LOADS = {
         "stiffness": not_negative("spring: stiffness"), "damping": not_negative("spring: damping"),
         "length": [pair for pair in not_negative("spring: length") if pair[0] is not None],
         "cubic": not_negative("spring: cubic"), "name": names("spring at a")}),
+    "table spring": Right(Model.spring, {
+        "node": "a", "to": "b", "force": [(-1.0, -2.0), (0.0, 0.0), (1.0, 3.0)]}, {
+            "force": [*have("spring at 'a': force", "no/file.csv", [1.0, 2.0], [(0.0, 1.0)], [],
+                            [(1.0, 0.0), (0.0, 0.0)], [(0.0, NAN), (1.0, 0.0)])],
+            "gap": [(-1.0, "spring at 'a': gap"), ("1", "spring at 'a': gap")],
+            "preload": are("spring at 'a': preload", *NO_NUMBER),
+            "tension_only": are("spring at 'a': tension_only", *[
+                one for one in NO_FLAG if one is not None]),
+            "stiffness": [(1.0, "has a stiffness and a force: give one of them")],
+            "between": [((0.0, 1.0), "is a table, so leave between= out")]}),
+    "table torsion": Right(Model.torsion_spring, {
+        "node": "a", "to": "c", "force": [(-1.0, -2.0), (0.0, 0.0), (1.0, 3.0)]}, {
+            "cubic": [(1.0, "put the cubic in force=")]}),
     "torsion_spring": Right(Model.torsion_spring, {"node": "a", "stiffness": 1.0, "to": "c"}, {
         "stiffness": not_negative("torsion spring: stiffness"),
         "axis": given(axis("torsion spring")),

@@ -20,6 +20,10 @@ class _CodePrinter(Powers, C99CodePrinter):
         x, yes, no = map(self._print, expr.args)
         return f"({x} > 0.0 ? {yes} : {no})"
 
+    def _print_tabled(self, expr):
+        u, order, _ = expr.args
+        return f"{expr.calls.name}({operand_code(expr.table)}, {self._print(u)}, {int(order)})"
+
 
 _PRINTER = _CodePrinter()
 

@@ -21,6 +21,10 @@ class _CodePrinter(Powers, PythonCodePrinter):
         x, yes, no = map(self._print, expr.args)
         return f"({yes} if {x} > 0.0 else {no})"
 
+    def _print_tabled(self, expr):
+        u, order, _ = map(self._print, expr.args)
+        return f"{expr.calls.name}({operand_code(expr.table)}, {u}, {order})"
+
 
 _PRINTER = _CodePrinter({"fully_qualified_modules": False})
 

@@ -19,8 +19,8 @@ from sebody.model.parts import DofBlock, Element, Joint
 from sebody.model.path_joints import PATH
 from sebody.model.variants.copying import copied
 
-PASSIVE = ("spring", "torsion_spring", "bushing", "gear_play", "distance_stop", "slide_stop",
-           "turn_stop", "friction_", "point_on_", "sphere_on_", "body_contact_")
+PASSIVE = ("spring", "torsion_spring", "table_", "bushing", "gear_play", "distance_stop",
+           "slide_stop", "turn_stop", "friction_", "point_on_", "sphere_on_", "body_contact_")
 OUTER = ("force", "torque", "follower_force", "follower_torque")
 RIGID = ("rigid_body", "point_mass")
 

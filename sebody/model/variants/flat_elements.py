@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import ROPE, Axes, Element, Joint, positions, rotations
+from sebody.model.spring_laws import unpacked
 from sebody.model.variants.flat_contacts import LAWS, flat_places, sign_of_angle
 from sebody.model.variants.flat_ropes import ROPE_KINDS, flat_wheel, rope_equation, sharing
 from sebody.model.variants.flattening import Flattening
@@ -227,6 +228,14 @@ def _torsion_spring(flat: Flattening, one: Element) -> tuple[str, dict]:
                                      "rest": side * c["rest"]}
 
 
+def _table_torsion_spring(flat: Flattening, one: Element) -> tuple[str, dict]:
+    axis = np.cross(one.vector("n"), one.vector("m"))
+    side = np.sign(flat.axial(axis, f"the axis of {one.name!r}"))
+    tables = {name: one.vector(name) if side > 0 else unpacked(one.vector(name)).mirrored().packed()
+              for name in ("force", "damper")}
+    return "planar_table_torsion_spring", tables | {"rest": side * one.number("rest")}
+
+
 def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
     """Its axes may lie in the plane in any direction where the third is normal to it.
 
@@ -279,7 +288,8 @@ def _along(flat: Flattening, one: Element) -> tuple[str, dict]:
 ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "rigid_body": _rigid_body, "point_mass": _unchanged, "force": _force, "follower_force": _force,
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
-    "torsion_spring": _torsion_spring, "bushing": _bushing, "bearing": _bushing,
+    "torsion_spring": _torsion_spring, "table_spring": _unchanged,
+    "table_torsion_spring": _table_torsion_spring, "bushing": _bushing, "bearing": _bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
     "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged,
     "rope_wheel": flat_wheel}

@@ -19,6 +19,8 @@ from sebody.contract.layout import (
     VELOCITY,
     Row,
 )
+from sebody.kernels.tables import SIZE
+from sebody.model.spring_laws import Law
 from sebody.verify.check import laws, ropes
 from sebody.verify.check.states import (
     LIMIT,
@@ -52,12 +54,27 @@ def element_case(module: ModuleType, seed: int) -> Case:
     seen = random.normal(size=getattr(module, "SEES", 0))
     index = np.r_[index_row(n, module.N_POSITIONS, nrot), 9 + kept]     # where those are
     case = Case(module, n, index,
-                1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1)), q, R.ravel(),
+                _constants(module, size, random), q, R.ravel(),
                 random.normal(size=n), random.normal(size=n),
                 np.r_[np.full(9, TURNED), np.zeros(kept), seen],
                 np.r_[np.zeros(9 + kept), seen],
                 random.normal(size=3), AMPLITUDES)
     return ropes.apart(case)
+
+
+def _constants(module: ModuleType, size: int, random: np.random.Generator) -> NDArray:
+    """Numbers about one; rows of tables ascend over the elongations of these states.
+
+    Dampers are linear: the criteria know no other ones.
+    """
+    constants = 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1))
+    for name, part in Row(module.__name__, module.CONSTANTS).slices({}).items():
+        if part.stop - part.start == SIZE:
+            forces, slopes = random.normal(size=(2, 6))
+            law = (Law.straight(abs(forces[0])) if name == "damper" else
+                   Law(np.linspace(-4.0, 3.0, 6), forces, slopes, slopes))
+            constants[part] = law.packed()
+    return constants
 
 
 def joint_force(case: Case) -> float:
