@@ -57,7 +57,7 @@ def test_damaged_and_foreign_hdf5_files(result, tmp_path):
         file.copy("sebody", older)
         del older["sebody/notes"]
         older["sebody/notes"] = json.dumps({"version": 1})
-    with pytest.raises(InputError, match="older.h5 is of version 1, this program reads 7"):
+    with pytest.raises(InputError, match="older.h5 is of version 1, this program reads 8"):
         Result.load(tmp_path / "older.h5")
     with h5py.File(path, "r+") as file:
         file["sebody/rows"][1, 3] += 1e-9

@@ -119,7 +119,7 @@ def test_files_that_hold_no_result(tmp_path):
         Result.load(tmp_path / "plain.npz")
     arrays["sebody/notes"] = np.array(json.dumps({"version": 0}))
     np.savez(tmp_path / "older.npz", **arrays)
-    with pytest.raises(InputError, match="older.npz is of version 0, this program reads 7"):
+    with pytest.raises(InputError, match="older.npz is of version 0, this program reads 8"):
         Result.load(tmp_path / "older.npz")
 
 
