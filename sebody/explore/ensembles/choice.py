@@ -29,6 +29,9 @@ FACTS = (       # each lets runs be made one by one alone
              element.law is None for element in one.numbering.memories)),
     Fact("joints and forces on paths, whose places are looked up in one run at a time",
          lambda one: any(e.path is not None for e in (*one.model.constraints, *one.model.loads))),
+    Fact("springs by tables, whose rows are looked up in one run at a time",
+         lambda one: any(e.kind.removeprefix("planar_").startswith("table_")
+                         for e in one.model.loads)),
     Fact("eight equal bodies or more, which each run evaluates eight at a time",
          lambda one: most_together(one.model) >= MEMBERS),
 )
