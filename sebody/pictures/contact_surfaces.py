@@ -15,6 +15,7 @@ from sebody.pictures.contact_shapes import (
     Shape,
     across_of,
     ball,
+    circle,
     disc,
     hatched,
     joined,
@@ -88,7 +89,17 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
     make = disc if model.planar else ball
     return [*(_plane(model, touching, size) for touching in planes.values()), *surfaces,
             *(ContactSurface(name, "ball", node, make(radius))
-              for (node, radius), name in balls.items()), *_curves(model, nodes, size)]
+              for (node, radius), name in balls.items()), *_curves(model, nodes, size),
+            *_sheaves(model, nodes)]
+
+
+def _sheaves(model: Mechanism, nodes: Mapping[str, DrawnNode]) -> Iterator[ContactSurface]:
+    """Sheaves of ropes: a circle, and a spoke that turns with the node."""
+    for one in model.sheaves.values():
+        if one.node.name in nodes:
+            u, v = across_of(one.axis)
+            yield ContactSurface(one.name, "gear", one.node.name, joined([
+                circle(one.radius, u, v, np.zeros(3)), line(np.zeros(3), one.radius * u)]))
 
 
 def _curves(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float

@@ -5,10 +5,11 @@ import pytest
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, LimitWarning, Model, generalized_alpha, simulate
-from sebody.analysis import equilibrium
+from sebody import InputError, LimitWarning, Model, Simulation, generalized_alpha, simulate
+from sebody.analysis import equilibrium, final, gradient
 from sebody.fem import rectangle
 from sebody.model.variants import planar
+from sebody.runs.restart import resume, save_state
 
 TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()
 AT = np.array([2.0, -1.0, 0.5])
@@ -257,6 +258,38 @@ def test_three_falls_on_a_flexible_boom():
     gap = found["tip.position"][-1] - found["hook.position"][-1]
     assert np.linalg.norm(gap) == pytest.approx(drop * (1 + pull / stiffness), rel=1e-9)
     assert found["rope.tension"][-1] == pytest.approx(3 * [pull], rel=1e-9)
+
+
+def pulled(factor=1.0):
+    """A weight that a torque on a drum hauls up over a sheave."""
+    model = hung({"p": (0, 0), "q": (1.5, 0.2), "a": (-0.2, -1)}, {"a": 3.0}, {"p": 0.2})
+    model.node("hub", turned(1.5, 0.2))
+    model.rigid_body("drum", "hub", 3.0, (0.02, 0.02, 0.02))
+    model.revolute("hub", TURN[:, 2], name="axle")
+    model.sheave("barrel", "hub", 0.1, axis=TURN[:, 2])
+    model.rope("rope", ("a", "wheel p", "barrel"), 1e5, damping=10.0, wrap="-")
+    model.torque("hub", -2.5 * TURN[:, 2], factor, name="push")
+    return model
+
+
+def test_gradients_are_those_of_differences():
+    scheme, h, end = generalized_alpha(index=3), 0.002, 0.2
+    wanted = {"x": final("a.position.y"), "T": final("rope.tension.0")}
+    found = gradient(pulled(), h, end, wanted, ["push.amplitude"], scheme=scheme).matrix[:, 0]
+    ends = [simulate(pulled(factor), h, end, scheme=scheme) for factor in (1 - 1e-4, 1 + 1e-4)]
+    for k, values in enumerate(([one["a.position"][-1, 1] for one in ends],
+                                [one["rope.tension"][-1, 0] for one in ends])):
+        assert found[k] == pytest.approx((values[1] - values[0]) / 2e-4, rel=1e-5)
+
+
+def test_a_run_goes_on_from_a_file(tmp_path):
+    """To the same numbers, turns of the drum included."""
+    whole, half = simulate(pulled(), 0.002, 0.1), Simulation(pulled(), 0.002)
+    half.run_to(0.05)
+    other = resume(pulled(), save_state(half, tmp_path / "state.npz"))
+    other.run_to(0.1)
+    for name in ("a.position", "rope.tension", "rope.elongation", "rope.wraps"):
+        assert np.array_equal(other.result()[name][-1], whole[name][-1])
 
 
 @pytest.mark.parametrize("places, wrap, said", [
