@@ -15,6 +15,16 @@ from sebody.derive.formulas import (
     table_springs,
 )
 
+SMOOTH_ALONG_PATHS = {      # those of both kinds whose one unknown of motion is the way on a path
+    "way_motor": lambda: actuators.motor("way", False),
+    "way_rotor": lambda: actuators.rotor("way", False),
+    "way_spring": forces.way_spring,
+}
+LAWS_ALONG_PATHS = {
+    "friction_way": lambda: frictions.friction_way(False),
+    "planar_friction_way": lambda: frictions.friction_way(True),
+    "way_stop": stops.way_stop,
+}
 SMOOTH = {          # joints, bodies and forces whose column is written in the unknowns
     "parallel_ground": lambda: joints.parallel(True),
     "parallel": lambda: joints.parallel(False),
@@ -70,9 +80,7 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     **{"planar_" * planar + f"{way}_{part.__name__}": partial(part, way, planar)
        for way in ("turn", "slide", "line") for part in (actuators.motor, actuators.rotor)
        for planar in (False, True)},
-    "way_motor": lambda: actuators.motor("way", False),
-    "way_rotor": lambda: actuators.rotor("way", False),
-    "way_spring": forces.way_spring,
+    **SMOOTH_ALONG_PATHS,
 }
 LAWS = {            # laws along measures, with numbers that are kept from step to step
     # friction in joints: f and m count the multipliers it reads, forces and moments
@@ -90,9 +98,7 @@ LAWS = {            # laws along measures, with numbers that are kept from step 
     "planar_friction_slide": lambda: frictions.friction_slide(True, (0, 0)),
     "planar_friction_slide_f1": lambda: frictions.friction_slide(True, (1, 0)),
     "planar_friction_slide_f1m1": lambda: frictions.friction_slide(True, (1, 1)),
-    "friction_way": lambda: frictions.friction_way(False),
-    "planar_friction_way": lambda: frictions.friction_way(True),
-    "way_stop": stops.way_stop,
+    **LAWS_ALONG_PATHS,
     "turn_stop": lambda: stops.turn_stop(False),
     "slide_stop": lambda: stops.slide_stop(False),
     "distance_stop": lambda: stops.distance_stop(False),

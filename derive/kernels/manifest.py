@@ -8,7 +8,7 @@ sources add, and files multiply no further than this table; any other combinatio
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
 from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
-from sebody.derive.kernels.catalogue import LAWS, SMOOTH
+from sebody.derive.kernels.catalogue import LAWS, LAWS_ALONG_PATHS, SMOOTH, SMOOTH_ALONG_PATHS
 from sebody.derive.kernels.motion import MOTIONS
 from sebody.derive.kernels.options import frame_traits
 from sebody.derive.kernels.path import PATH_LOADS, PATHS
@@ -68,15 +68,13 @@ ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *PATHS, *PATH_LOADS, *MOTIO
 
 # long kernels of rare elements: gradients of runs with these take matrices in place of products
 UNSHIPPED = "bearing", "planar_bearing"
-# and of what acts along paths, whose runs have none
-ALONG_PATHS = tuple(name for name in CATALOGUE
-                    if name.removeprefix("planar_").removeprefix("friction_").startswith("way"))
 # with products of their derivatives, of which gradients of runs are made: general superelements and
 # the layouts of beams, others take these; no frames that depend on the steps before
 LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])
       and (row[0] in LAYOUTS or row[2] == "frame_axes")),
-    *(name for name in SMOOTH if name not in (*UNSHIPPED, *ALONG_PATHS)),
-    *(name for name in LAWS if name not in ALONG_PATHS),
+    # none of what acts along paths, whose runs have no gradients
+    *(name for name in SMOOTH if name not in (*UNSHIPPED, *SMOOTH_ALONG_PATHS)),
+    *(name for name in LAWS if name not in LAWS_ALONG_PATHS),
     *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))

@@ -14,7 +14,7 @@ from sebody.derive.form import steps
 from sebody.derive.form.arrays import constant, scratch
 from sebody.derive.formulas.frames import converged_mean
 from sebody.derive.formulas.inertia import option_b
-from sebody.derive.kernels import linearize, options, superelement
+from sebody.derive.kernels import catalogue, linearize, options, superelement
 
 ROOT = Path(__file__).parents[2]
 # each imports from those before it
@@ -125,6 +125,13 @@ def test_a_frame_declares_its_constants_and_scratch_rows(monkeypatch):
     ("distance", "element_distance.py")])
 def test_file_names(variant, name):
     assert file_name(variant) == name
+
+
+@pytest.mark.parametrize("name", [*catalogue.SMOOTH_ALONG_PATHS, *catalogue.LAWS_ALONG_PATHS])
+def test_what_acts_along_paths_stands_on_the_way_alone(name):
+    """The tables of the catalogue say what their elements are."""
+    given = catalogue.ELEMENTS[name]()
+    assert [block.state.kind for block in given.blocks] == ["scalar"]
 
 
 @pytest.mark.parametrize("layout", ["f2", "planar-f2d", "f2t1"])
