@@ -6,7 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.pictures.contact_surfaces import ContactSurface, vertices_of
-from sebody.pictures.palette import BODIES, CONTACT, DRIVE, GROUND, JOINT, LINK, LOAD, SPRING, rgb
+from sebody.pictures.palette import (
+    BODIES,
+    CONTACT,
+    DRIVE,
+    GROUND,
+    JOINT,
+    LINK,
+    LOAD,
+    ROPE,
+    SLACK,
+    SPRING,
+    rgb,
+)
 from sebody.pictures.plots import ACCENT
 from sebody.pictures.rendering import Eye, Painter, Solid, ribbon
 from sebody.pictures.scene import Scenery
@@ -14,7 +26,7 @@ from sebody.pictures.scene import Scenery
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-HALF = 0.007            # half the width of links, of the model's extent
+HALF, THIN = 0.007, 0.003       # half the width of links and of ropes, of the model's extent
 ARROW = 0.2             # length of the largest force, of the model's extent
 TURN = 0.07             # radius of the largest torque, likewise
 SKIN, LINES = 0.14, 1.0     # opacities of contact surfaces
@@ -61,13 +73,17 @@ class Marks:
                 Solid(points, shape.triangles[:0], colour, shape.lines, LINES, CONTACT)]
 
     def links(self, k: int) -> list[tuple[NDArray, str, float]]:
-        """Flat polygons of the links in a frame, their colours and depths."""
+        """Flat polygons of links and ropes in a frame, their colours and depths."""
         polygons = []
         for number, link in enumerate(self._drawn.links):
             if link.kind != "spring":
                 ends = self._ends(link.ends, k)
                 colour = self._colours.get(number, BODIES[0]) if link.kind == "body" else LINK
                 polygons.append((ribbon(ends, HALF), colour, float(ends[:, 2].mean())))
+        for rope in self._drawn.ropes:
+            points, colour = self._eye.seen(rope.points[k]), SLACK if rope.slack[k] else ROPE
+            polygons += [(ribbon(ends, THIN), colour, float(ends[:, 2].mean()))
+                         for ends in np.stack([points[:-1], points[1:]], axis=1)]
         return polygons
 
     def _ends(self, names: tuple[str, str], k: int) -> NDArray:

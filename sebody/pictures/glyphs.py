@@ -1,6 +1,5 @@
 """Links and signs of a picture: what has no surface of its own."""
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -46,8 +45,6 @@ def links(model: Mechanism, nodes: set[str], drawn: set[str]) -> list[Link]:
               if c.kind == "position" and c.to and not np.array_equal(c.to.point, c.node.point)]
     lines += [Link("distance", (joint.node.name, joint.to.name)) for joint in model.joints
               if joint.kind == "distance"]
-    lines += [Link("distance", (a.node.name, b.node.name)) for rope in model.ropes.values()
-              for a, b in pairwise(rope.places)]
     lines += [Link("spring", (load.attachments[0].node.name, load.attachments[1].node.name))
               for load in model.loads if load.kind in SPRINGS]
     return [link for link in dict.fromkeys(lines) if set(link.ends) <= nodes]

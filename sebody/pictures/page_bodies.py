@@ -101,6 +101,14 @@ def contacts(blocks: Blocks, drawn: Scenery, measure: Measure) -> list[dict]:
     return surfaces
 
 
+def ropes(blocks: Blocks, drawn: Scenery, measure: Measure) -> list[dict]:
+    """Points of ropes in each frame, and the node that each of them is at."""
+    number = {name: k for k, name in enumerate(drawn.nodes)}
+    return [{"name": rope.name, "nodes": [number[name] for name in rope.places],
+             "points": blocks.values(measure.places(rope.points).reshape(len(drawn.t), -1), SEEN),
+             "slack": blocks.values(1.0 * rope.slack[:, None])} for rope in drawn.ropes]
+
+
 def marks(blocks: Blocks, drawn: Scenery) -> dict:
     """Links, signs, and loads in parts of the largest of their kind."""
     number = {name: k for k, name in enumerate(drawn.nodes)}

@@ -15,6 +15,7 @@ from sebody.pictures.colouring import Colouring, colourings
 from sebody.pictures.drawn_nodes import extent
 from sebody.pictures.page_bodies import Measure
 from sebody.pictures.page_plots import plots
+from sebody.pictures.rope_lines import numbers_of_ropes
 from sebody.pictures.scene import Scenery, scenery, seen_places
 from sebody.pictures.templates import filled
 from sebody.results.result import Result
@@ -64,6 +65,7 @@ def _most_frames(result: Result) -> int:
     model = result.model
     numbers = 7 * len(model.nodes) + sum(7 + len(body.reduced.stiffness)
                                          for body in model.bodies.values())
+    numbers += numbers_of_ropes(model)
     return int(np.clip(NUMBERS // max(numbers, 1), FEWEST_FRAMES, FRAMES))
 
 
@@ -82,6 +84,7 @@ def _header(blocks: Blocks, result: Result, drawn: Scenery) -> dict:
         "entries": [entry._asdict() for entry in drawn.entries],
         "nodes": page_bodies.nodes(blocks, result, drawn, measure),
         "contacts": page_bodies.contacts(blocks, drawn, measure),
+        "ropes": page_bodies.ropes(blocks, drawn, measure),
         **page_bodies.marks(blocks, drawn),
         "sign": _sign(drawn, measure), "view": _view(drawn, measure.places(places), measure.size),
         "trace": list(drawn.nodes).index(drawn.farthest),

@@ -4,6 +4,7 @@ BODIES = ("#4c78a8", "#e4873f", "#5a9e6f", "#b65d7c", "#8a6fb0", "#c8a23c", "#4a
 WITHOUT_VALUE = "#b9c0cc"       # of bodies that have no value of the quantity that colours others
 LINK, SPRING, LOAD, JOINT = "#8d97aa", "#2a7f62", "#7b3fa0", "#39455f"
 GROUND, DRIVE, CONTACT = "#5b6478", "#c8452d", "#8a7a4f"
+ROPE, SLACK = "#6b4a2f", "#d3c3b3"
 AXES = ("#c8452d", "#2a7f62", "#3566b8")        # x, y and z
 CURVES = (*AXES, "#d99a2b", "#6a4c93", "#1f2a44", "#8c564b", "#7f7f7f")
 # from small to large values

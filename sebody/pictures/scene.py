@@ -15,6 +15,7 @@ from sebody.pictures.drawn_bodies import DrawnBody, flexible, rigid, with_stress
 from sebody.pictures.drawn_nodes import DrawnNode, drawn_nodes, extent
 from sebody.pictures.glyphs import Link, Sign, links, signs
 from sebody.pictures.palette import BODIES
+from sebody.pictures.rope_lines import DrawnRope, drawn_ropes
 from sebody.pictures.surface import spatial
 from sebody.results.references import Welded
 from sebody.results.result import Result
@@ -44,6 +45,7 @@ class Scenery(NamedTuple):
     links: list[Link]
     signs: list[Sign]
     contacts: list[ContactSurface]
+    ropes: list[DrawnRope]
     arrows: list[Arrow]
     gravity: NDArray        # (3,)
     planar: bool
@@ -92,6 +94,7 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
     lines = links(model, set(nodes), drawn)
     return Scenery(result.t[states], states, bodies, _entries(model, bodies, lines), nodes, lines,
                    signs(model, set(nodes)), contact_surfaces(model, nodes, extent(nodes)),
+                   drawn_ropes(result, states, nodes),
                    arrows(result, states, set(nodes), drawn),
                    spatial(np.asarray(model.gravity_field)), model.planar,
                    *_view(model, nodes), result.units)

@@ -2,7 +2,7 @@
 
 from sebody.model.parts import Element, Rope, RopePlace, Sheave, Stretch
 from sebody.quantities.algebra import total
-from sebody.quantities.expressions import Number
+from sebody.quantities.expressions import Number, positive
 from sebody.quantities.numbers import Numbers, Parts
 
 
@@ -30,14 +30,28 @@ def passes(of: Parts, name: str) -> bool:
 
 def tension(of: Numbers, name: str) -> list[Number]:
     """Tensions of the spans, in the order of the rope; zero where it is slack."""
-    return [of.multiplier(of.numbering.multipliers[stretch.law])
-            for stretch in of.model.ropes[name].stretches for _ in stretch.spans]
+    return [pull for stretch in of.model.ropes[name].stretches
+            for pull in [_pull(of, stretch)] * len(stretch.spans)]
+
+
+def _pull(of: Numbers, stretch: Stretch) -> Number:
+    """Tension of a stretch: its multiplier, but for what iterations leave where it is slack."""
+    found = of.multiplier(of.numbering.multipliers[stretch.law])
+    return taut(of, stretch) * positive(found) * found + 0.0        # no -0
+
+
+def taut(of: Numbers, stretch: Stretch) -> Number:
+    """One where a stretch is longer than without force, and zero elsewhere."""
+    return positive(_elongation(of, stretch))
 
 
 def length(of: Numbers, name: str) -> Number:
     """Length of the way of a rope between its ends, without what is wound on drums."""
-    return total(of.coordinates("q", stretch.length)[0]
-                 for stretch in of.model.ropes[name].stretches)
+    rope = of.model.ropes[name]
+    passed = [place for place in rope.places[1:-1] if place.sheave is not None]
+    held = (abs(place.radius) * wrap for place, wrap in zip(passed, wraps(of, name), strict=True)
+            if place.sheave and place.sheave.wheel)     # others are in the lengths of stretches
+    return total([*(of.coordinates("q", stretch.length)[0] for stretch in rope.stretches), *held])
 
 
 def elongation(of: Numbers, name: str) -> Number:
@@ -61,12 +75,16 @@ def wraps(of: Numbers, name: str) -> list[Number]:
     found = []
     for k, place in enumerate(rope.places[1:-1], 1):
         if place.sheave is not None:
-            turned = _angle(of, spans[k], place) - _angle(of, spans[k - 1], place)
+            turned = angle(of, spans[k], place) - angle(of, spans[k - 1], place)
             found.append(place.wrap + (1.0 if place.radius > 0 else -1.0) * turned)
     return found
 
 
-def _angle(of: Numbers, span: Element, place: RopePlace) -> Number:
-    """Angle that a span keeps at one of its sheaves."""
-    at = 0 if span.attachments[0].node is place.node else 1
-    return of.recorded("frames", of.numbering.memories[span][at])
+def angle(of: Numbers, span: Element, place: RopePlace) -> Number:
+    """Angle of a span at one of its sheaves from its ray of there, in axes of the node."""
+    return of.recorded("frames", of.numbering.memories[span][end(span, place)])
+
+
+def end(span: Element, place: RopePlace) -> int:
+    """Number of the end of a span at a sheave: 0 has the constants ``e1_a``, 1 ``e1_b``."""
+    return 0 if span.attachments[0].node is place.node else 1

@@ -12,6 +12,9 @@ class Marks {
     for (const name of Object.keys(SHAPES)) this.shapes[name] = this.renderer.mesh(SHAPES[name]());
     this.arrows = header.arrows.map((arrow) => ({
       ...arrow, values: scene.numbers.values(arrow.values) }));
+    this.ropes = header.ropes.map((rope) => ({
+      ...rope, points: scene.numbers.values(rope.points),
+      slack: scene.numbers.values(rope.slack) }));
   }
 
   link(link, colour) {
@@ -30,6 +33,15 @@ class Marks {
     const side = across(half);
     const axes = [half, times(width, side), times(width, unit(cross(half, side)))];
     this.renderer.draw(this.shapes.cylinder, placed(axes, add(a, half)), colour, alpha);
+  }
+
+  // Ropes by their points, each shifted as the node that it is at; slack ones are pale.
+  rope({ nodes, points, slack }) {
+    const { motion, paint, shifts } = this.scene, now = motion.now(points, 3 * nodes.length);
+    const places = nodes.flatMap((node, k) => add(now.slice(3 * k, 3 * k + 3), shifts.node(node)));
+    const colour = motion.now(slack, 1)[0] > 0.5 ? paint.slack : paint.rope;
+    this.renderer.lines(new Float32Array(places), { tint: [...colour, 1], width: 2.2,
+                                                    joined: true });
   }
 
   // Signs of joints and supports; faintly also where they are behind something.

@@ -110,6 +110,7 @@ class Scene {
     for (const entry of this.entries.filter((one) => one.visible)) {
       for (const k of entry.links) marks.link(this.header.links[k], entry.paint);
     }
+    marks.ropes.forEach((rope) => marks.rope(rope));
     for (const node of shown.trace) this.trace(node);
     if (shown.nodes) this.nodes();
     if (shown.joints) marks.signs();
