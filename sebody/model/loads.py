@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from os import PathLike
 from typing import Unpack
 
 from numpy.typing import ArrayLike
@@ -220,9 +221,18 @@ def gravity(model: Mechanism, field: ArrayLike) -> None:
     Raises
     ------
     InputError
-        Another number of values than coordinates, or values that are not finite.
+        Another number of values than coordinates, values that are not finite, or a function or
+        table of time, in place of which the base moves.
     """
-    model.gravity_field = vector(model, field, "gravity")
+    what, count = "gravity", model.dimension
+    if (callable(field) or isinstance(field, TimeFunction | PathLike)
+            or isinstance(field, str) and field.endswith(".csv")
+            or inputs.reals(field, what, f"give {count} finite numbers").shape[1:]
+            and len(field) > 1):   # type: ignore[arg-type]
+        raise InputError(f"{what} is a function or table of time, but it is constant in a run: "
+                         f"give {count} numbers, and what changes with the opposite sign as motion "
+                         "of the base, move(node, direction, acceleration=...)")
+    model.gravity_field = vector(model, field, what)
 
 
 def _body(model: Mechanism, name: str) -> Superelement:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple, Unpack, cast
+from typing import Any, NamedTuple, Unpack, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -210,9 +210,12 @@ def bushing(model: Mechanism, node: Node | str, to: Node | str | None = None,
     ------
     InputError
         Coefficients that are negative, matrices whose symmetric part is not positive, no rotation,
-        nodes that do not coincide, or a table that is wrong, or has not this speed.
+        nodes that do not coincide, or a table that is wrong, or has not this speed; tables and
+        functions of the elongation, `force=` or in place of a coefficient.
     """
     a, b = pair(model, node, to, "bushing")
+    _refuse_laws(a, {"stiffness": stiffness, "damping": damping, "turning_stiffness":
+                     turning_stiffness, "turning_damping": turning_damping}, acting)
     check_together(model, a, b, "bushing")
     turn = _bushing_axes(model, a, rotation, axis)
     rows = None
@@ -272,6 +275,28 @@ def refuse_tables(model: Mechanism) -> None:
         if bearing.read_at is None:
             raise InputError(f"{bearing.name!r} has a table of the speed, which a run over time "
                              "does not follow: give bushing(..., speed=), at which it is read")
+
+
+def _refuse_laws(a: Node, coefficients: Mapping[str, Any], acting: Mapping[str, Any]) -> None:
+    """Refuse tables and functions of the elongation, which springs and torsion springs have."""
+    laws = [name for name, given in coefficients.items() if _is_law(given)]
+    laws += sorted(acting.keys() & set(Special._fields))
+    if laws:
+        raise InputError(f"bushing at {a.name!r} has a law by {laws[0]}=: its axes have "
+                         "coefficients alone; give spring(force=..., damping=...) between nodes "
+                         "along an axis, or torsion_spring(force=...) about it")
+
+
+def _is_law(given: Any) -> bool:
+    """Tell whether a coefficient is a table or function, or one of its axes is."""
+    if isinstance(given, list | tuple) and any(map(_is_law, given)):
+        return True
+    try:
+        rows, *columns = np.shape(given) or (0,)
+    except ValueError:      # a table for one axis, numbers for others
+        return True
+    return (callable(given) or isinstance(given, PathLike) or columns == [2] and rows != 2
+            or isinstance(given, str) and given.endswith(".csv"))
 
 
 def _of_table(a: Node, table: Mapping[str, ArrayLike] | str | Path, speed: float | None,

@@ -23,7 +23,8 @@ JOINTS = ("parallel_ground", "coincident", "coincident_ground", "planar_coincide
           "planar_on_line", "planar_aligned", "distance", "planar_distance", "slide_drive",
           "planar_slide_drive", "planar_turn_drive")
 OTHERS = ("planar_spring", "planar_rigid_body", "planar_bushing", "follower_torque",
-          "planar_friction_turn_f2", "distance_stop", "planar_sphere_on_plane")
+          "planar_friction_turn_f2", "distance_stop", "planar_sphere_on_plane",
+          "planar_table_spring", "table_torsion_spring")
 ROUNDING = 1e-13        # of numbers around one: products and sums are fused in other places
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler: set CC")
 

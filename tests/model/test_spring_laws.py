@@ -210,3 +210,18 @@ def test_refused(tmp_path):
         with pytest.raises(InputError) as caught:
             mass_on(**given)
         assert said in str(caught.value), said
+
+
+@pytest.mark.parametrize("named, given", [
+    ("force", {"force": ROWS}), ("gap", {"stiffness": 1.0, "gap": 0.1}),
+    ("stiffness", {"stiffness": ROWS}), ("stiffness", {"stiffness": (ROWS, 1.0, 1.0)}),
+    ("damping", {"damping": (1.0, lambda rate: rate**3, 1.0)}),
+    ("turning_stiffness", {"turning_stiffness": "law.csv"})])
+def test_laws_of_bushings_are_refused(named, given):
+    """Of springs along and about their axes they are not."""
+    model = Model()
+    model.node("a", PLACE)
+    with pytest.raises(InputError, match=rf"bushing at 'a' has a law by {named}=.*"
+                       r"spring\(force=.*torsion_spring\(force="):
+        model.bushing("a", **given)
+    assert not model.loads

@@ -3,12 +3,13 @@
 from collections.abc import Iterable, Iterator
 
 from sebody.derive.form.arrays import array_of
-from sebody.derive.form.functions import Gives, Use
+from sebody.derive.form.functions import TABLE_LAW, Gives, Use
 from sebody.derive.form.kernel import Kernel
 from sebody.derive.form.statements import For, If, Invoke, Operand, Statement
 from sebody.derive.kernels.arguments import ARGUMENTS, SIZES
 from sebody.derive.passes.fold import folded
 from sebody.derive.passes.uses import uses
+from sebody.derive.printing.c import tables
 from sebody.derive.printing.c.statements import REAL, WHOLE, Block, pointer
 from sebody.derive.printing.lines import INDENT, filled, listed
 
@@ -19,8 +20,8 @@ HEAD = ("// Kernels of sebody as C99; sebody/contract/layout.py describes their 
 def file_text(kernels: Iterable[Kernel]) -> str:
     """A file of some kernels, each a function by its name.
 
-    Counts that are known are numbers in it. Functions of the runtime are declared, not defined:
-    joints, rigid bodies and forces call none.
+    Counts that are known are numbers in it. Of functions of the runtime the law by a table, which
+    springs call, is defined; others are declared: joints, rigid bodies and forces call none.
     """
     bodies = {kernel.name: folded(kernel.body, kernel.known) for kernel in kernels}
     numbers = {agreed.name: agreed.value for body in bodies.values()
@@ -48,6 +49,9 @@ def _declared(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
     bodies = list(bodies)
     calls = {call.function: call for body in bodies for call in _calls(body)}
     for function in dict.fromkeys(f for body in bodies for f in uses(body).functions):
+        if function == TABLE_LAW:
+            yield tables.TABLE_LAW
+            continue
         kinds = [WHOLE + name for name, _ in function.operands]
         if function in calls:
             given = zip(function.operands, calls[function].operands, strict=True)
