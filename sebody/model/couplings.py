@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Unpack
 
 import numpy as np
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, known_joint
 from sebody.model.frictions import turning
 from sebody.model.mechanism import Mechanism
@@ -25,7 +26,7 @@ COORDINATES = {"angle": TURNS, "displacement": SLIDES}     # as results name the
 
 
 def couple(model: Mechanism, first: Joint | str, second: Joint | str, ratio: float,
-           name: str | None = None) -> Joint:
+           name: str | None = None, **acting: Unpack[Acting]) -> Joint:
     """Couple the angles or displacements of two joints: ``first = ratio x second``.
 
     An equation holds the ratio exactly; `gear` has elastic teeth and play. Angles and displacements
@@ -46,6 +47,9 @@ def couple(model: Mechanism, first: Joint | str, second: Joint | str, ratio: flo
         other. ``<name>.ratio`` is a parameter of ensembles and gradients.
     name : str, optional
         By default ``coupling of <first> and <second>``.
+    **acting
+        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
+        coupling has no `from_`.
 
     Returns
     -------
@@ -65,10 +69,11 @@ def couple(model: Mechanism, first: Joint | str, second: Joint | str, ratio: flo
     ratio = _not_zero(ratio, f"{what}: ratio", "the first coordinate for one of the second")
     if one.turns and not other.turns:
         one, other, ratio = other, one, 1.0 / ratio
-    return _coupled(model, what, one, other, ratio, name)
+    return _coupled(model, what, one, other, ratio, name, acting)
 
 
-def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None = None) -> Joint:
+def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None = None,
+          **acting: Unpack[Acting]) -> Joint:
     """Make a screw of a cylindrical joint: ``displacement = pitch x angle / (2 pi)``.
 
     A coupling without elasticity and friction, see `couple`; dry friction in the thread is
@@ -82,6 +87,9 @@ def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None =
         Way of one turn [length]; negative of a left-handed thread.
     name : str, optional
         By default ``screw in <joint>``.
+    **acting
+        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
+        coupling has no `from_`.
 
     Returns
     -------
@@ -102,11 +110,11 @@ def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None =
     what = f"screw in {found.name}"
     lead = _not_zero(pitch, f"{what}: pitch", "the way of one turn") / (2.0 * np.pi)
     return _coupled(model, what, _Coordinate(found, "displacement"), _Coordinate(found, "angle"),
-                    lead, name)
+                    lead, name, acting)
 
 
 def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float,
-         name: str | None = None) -> Joint:
+         name: str | None = None, **acting: Unpack[Acting]) -> Joint:
     """Couple a rack, which slides, to a pinion, which turns: ``displacement = radius x angle``.
 
     A coupling without elasticity, see `couple`.
@@ -121,6 +129,9 @@ def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float
         Pitch radius of the pinion [length]; negative where the rack runs against the angle.
     name : str, optional
         By default ``rack <rack> on <pinion>``.
+    **acting
+        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
+        coupling has no `from_`.
 
     Returns
     -------
@@ -144,7 +155,7 @@ def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float
         found.append(_Coordinate(joint, coordinate))
     what = f"rack {found[0].joint.name} on {found[1].joint.name}"
     radius = _not_zero(radius, f"{what}: radius", "that of the pinion")
-    return _coupled(model, what, found[0], found[1], radius, name)
+    return _coupled(model, what, found[0], found[1], radius, name, acting)
 
 
 class _Coordinate(NamedTuple):
@@ -197,8 +208,18 @@ def _coordinate(model: Mechanism, given: Joint | str) -> _Coordinate:
 
 
 def _coupled(model: Mechanism, what: str, first: _Coordinate, second: _Coordinate, ratio: float,
-             name: str | None) -> Joint:
+             name: str | None, acting: Acting) -> Joint:
     """Add the equation ``first - ratio second = 0``."""
+    if "from_" in acting:
+        raise InputError(f"{what} has from_=, but its coordinates count from the start, so it "
+                         "would have to fit by chance: leave it out; weld(..., from_=) locks any "
+                         "pose")
+    for one in (first, second):
+        if one.joint.name in model.switches:
+            raise InputError(f"{what}: {one.joint.name!r} acts "
+                             f"{model.switches[one.joint.name].words()}, and without this joint "
+                             f"there is no {one.name}: give the coupling until= and the like, and "
+                             "let the joint act all the time")
     if first == second:
         raise InputError(f"{what}: give two coordinates")
     constants = {"ratio": ratio}

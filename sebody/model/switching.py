@@ -6,7 +6,7 @@ from typing import Any
 from sebody.basics.errors import InputError
 from sebody.model.acting import switch_of
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element
+from sebody.model.parts import Element, Joint
 
 
 def note(model: Mechanism, name: str, given: Mapping[str, Any]) -> None:
@@ -20,7 +20,9 @@ def note(model: Mechanism, name: str, given: Mapping[str, Any]) -> None:
     if not given:
         return
     made = model.element(name)     # refuses a name that two have
-    turns = isinstance(made, Element) and all(one.kind == "rotation" for one in made.attachments)
+    parts = made.constraints if isinstance(made, Joint) else (made,)
+    places = [at for one in parts if isinstance(one, Element) for at in one.attachments]
+    turns = bool(places) and all(place.kind == "rotation" for place in places)
     model.switches[name] = switch_of(given, repr(name), turns)
 
 

@@ -243,3 +243,42 @@ def test_refused():
             call()
         assert said in str(caught.value)
     assert len(model.joints) == 7
+
+
+@pytest.mark.parametrize("how, when", [
+    ("until", {"until": 0.617}), ("breaks_at", {"breaks_at": 0.7}),
+    ("release_when", {"release_when": "axle one.angle > 0.4"})])
+def test_a_coupling_lets_go(how, when):
+    """From then on each wheel turns by itself; a number is the moment of what couples angles."""
+    model = Model()
+    for name, point, inertia in (("one", (0.0, 0.0, 0.2), 0.5), ("two", (1.0, 0.5, 0.0), 0.8)):
+        model.revolute(body(model, name, point, inertia=inertia), Z, name=f"axle {name}")
+    model.couple("axle one", "axle two", -2.5, name="mesh", **when)
+    ramp = 5.0      # of the torque, so that the moment of the mesh grows
+    model.torque("one", Z, lambda t: ramp * t, name="motor")
+    result = simulate(model, 0.005, 1.0, scheme=EXACT)
+    whole = 0.5 + 0.8 / 2.5**2
+    passed = ramp * (1.0 - 0.5 / whole)     # by the mesh, for one of the time
+    ends = {"until": 0.617, "breaks_at": 0.7 / passed,
+            "release_when": (6.0 * whole * 0.4 / ramp) ** (1.0 / 3.0)}[how]
+    (event,) = result.events
+    assert event.time == pytest.approx(ends, abs=2e-5) and abs(event.lost) < 1e-9
+    assert event.what == ("mesh broke" if how == "breaks_at" else "mesh let go")
+    t, after = result.t, result.t > event.time
+    np.testing.assert_allclose(result["mesh.torque"][~after], -passed * t[~after], atol=1e-3)
+    assert not result["mesh.torque"][after].any() and not result["mesh.moment"][after].any()
+    alone = ramp * (event.time**2 / whole + (t**2 - event.time**2) / 0.5) / 2
+    np.testing.assert_allclose(result["axle one.rate"], np.where(
+        after, alone, ramp * t**2 / whole / 2), atol=1e-4)
+    np.testing.assert_allclose(result["axle two.rate"][after],
+                               -ramp * event.time**2 / whole / 5.0, atol=1e-4)
+    assert result.energy_balance() < 1e-4
+
+
+def test_what_couplings_refuse_of_when_they_act():
+    model = gears()
+    with pytest.raises(InputError, match="coupling of .* has from_=.*leave it out.*weld"):
+        model.couple("axle one", "axle two", 2.0, from_=0.3)
+    model.cylindrical(body(model, "nut", (0.0, 0.0, 0.7)), Z, name="spindle", until=0.2)
+    with pytest.raises(InputError, match="screw in spindle: 'spindle' acts until t = 0.2.*until="):
+        model.screw("spindle", 0.1)
