@@ -65,7 +65,7 @@ def element_case(module: ModuleType, seed: int) -> Case:
 def _constants(module: ModuleType, size: int, random: np.random.Generator) -> NDArray:
     """Numbers about one; rows of tables ascend over the elongations of these states.
 
-    Dampers are linear: the criteria know no other ones.
+    Dampers are linear, as other criteria have them; `curved_damper` is of one that is not.
     """
     constants = 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1))
     for name, part in Row(module.__name__, module.CONSTANTS).slices({}).items():
@@ -162,6 +162,17 @@ def _symmetric(case: Case) -> NDArray:
     return constants
 
 
+def curved_damper(case: Case) -> float:
+    """Velocity tangent of a damper by a table against differences in small steps of the rates."""
+    constants = case.constants.copy()
+    law = Law(np.array([-20.0, 20.0]), np.array([-14.0, 18.0]), *np.array([[2.0, 0.7]] * 2))
+    constants[Row(case.module.__name__, case.module.CONSTANTS).slices({})["damper"]] = law.packed()
+    case = case._replace(constants=constants)
+    exact = [derivative(lambda s, d=d: evaluate(case._replace(v=case.v + s * d), RESIDUAL)[0], 0.1)
+             for d in np.eye(case.n)]
+    return difference(evaluate(case, TANGENT, (0, 1, 0, 1, 1))[1], np.array(exact).T)
+
+
 def hamilton(case: Case) -> float:
     """Force against Hamilton's principle: rate of dT/dv, d(T - V)/dq, Hamel's term."""
     force = derivative(lambda t: momenta(along_path(case, t)), 0.003)
@@ -201,6 +212,8 @@ def criteria(module: ModuleType) -> dict:
                    "tangent, mass": tangent_mass}
     else:
         chosen |= {"power": power, "force = dV/dq": force_at_rest}
+    if "damper" in Row(module.__name__, module.CONSTANTS).slices({}):
+        chosen |= {"tangent, velocity, of a curved damper": curved_damper}
     return chosen | {"tangent, velocity": tangent_rate}
 
 
