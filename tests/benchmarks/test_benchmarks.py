@@ -379,3 +379,11 @@ def test_small_mechanisms_are_compared_with_another_version():
     own, other = ({key: value for key, value in one.items() if key != "us"} for one in row["rows"])
     assert own == other and own["cuts"] == 0 and 3.0 < own["corrections"] < 4.5
     assert row["ratio"] > 0.0 and 1e-10 < own["deviations"][0] < 1e-5
+
+
+def test_a_crane_with_three_features_closes_its_energy(capsys):
+    imported("bench_let_go").main(["--json", "--steps", "2.5e-3,1.25e-3"])
+    coarse, fine = json.loads(capsys.readouterr().out)
+    # with an order of at least 1.5: where the rope becomes taut has an error of its own
+    assert fine["balance"] < min(5e-5, 0.35 * coarse["balance"])
+    assert coarse["slack"] > 0.3 and abs(coarse["breaks"] - fine["breaks"]) < 2e-3
