@@ -45,17 +45,24 @@ def naming_arguments(function: Callable[Arguments, Made]) -> Callable[Arguments,
     return named
 
 
-def refuse_arguments(function: Callable, given: Iterable[str], first: int = 0) -> None:
+def refuse_arguments(function: Callable, given: Iterable[str], first: int = 0,
+                     others: Iterable[str] = ()) -> None:
     """Refuse arguments by names that a function does not have; its own from `first` on are listed.
+
+    Parameters
+    ----------
+    others : iterable of str
+        Names that it takes by ``**``; without them a function that takes any is not looked at.
 
     Raises
     ------
     TypeError
     """
     own = list(signature(function).parameters.values())
-    names = [one.name for one in own[first:]]
+    listed = [one.name for one in own[first:] if one.kind is not Parameter.VAR_KEYWORD]
+    names = [*listed, *others]
     odd = [name for name in given if name not in names]
-    if odd and not any(one.kind is Parameter.VAR_KEYWORD for one in own):
+    if odd and (len(names) > len(listed) or len(listed) == len(own) - first):
         raise TypeError(f"{function.__name__} has no {'=, '.join(odd)}=: its arguments are "
                         f"{', '.join(names)}") from None
 

@@ -40,6 +40,9 @@ class Acting(TypedDict, total=False):
     from_: float
 
 
+ACTING = tuple(Acting.__annotations__)
+
+
 class Switch(NamedTuple):
     """When a part acts, see `Acting`."""
 
@@ -85,9 +88,9 @@ def switch_of(given: Mapping[str, Any], what: str, turns: bool = False) -> Switc
     TypeError
         A name that is none of `Acting`.
     """
-    if odd := [name for name in given if name not in Acting.__annotations__]:
+    if odd := [name for name in given if name not in ACTING]:
         raise TypeError(f"{what} has no {'=, '.join(odd)}=: of when it acts there are "
-                        f"{', '.join(Acting.__annotations__)}")
+                        f"{', '.join(ACTING)}")
     found: dict[str, Any] = {
         name: inputs.number(given[name], f"{what}: {name}", above=0.0, remedy="give a time > 0")
         for name in ("until", "from_") if name in given}

@@ -7,6 +7,7 @@ from inspect import isfunction, signature
 from typing import ParamSpec, TypeVar, cast
 
 from sebody.basics.spelling import refuse_arguments
+from sebody.model.acting import ACTING
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Joint
 from sebody.model.switching import note
@@ -50,6 +51,6 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
         except BaseException as error:
             vars(model).update(kept)
             if isinstance(error, TypeError):
-                refuse_arguments(build, named, first=1)
+                refuse_arguments(build, named, 1, ACTING if "acting" in own else ())
             raise
     return built

@@ -151,13 +151,14 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
     rest = inputs.number(rest, f"torsion spring at {a.name!r}: rest", remedy="give a number")
     warn_of_degrees(f"torsion spring at {a.name!r}", rest=rest)
     law = Special(force, damping, gap, tension_only, preload, between)
-    constants: dict[str, float | NDArray] = {"rest": rest}
+    constants: dict[str, float | NDArray]
     if law.given:
-        constants |= law.tables(f"{what} at {a.name!r}", stiffness, cubic)
+        constants = law.tables(f"{what} at {a.name!r}", stiffness, cubic)
     else:
         damping = cast(float, damping)
         _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
-        constants |= {"k": stiffness, "k3": cubic, "c": damping}
+        constants = {"k": stiffness, "k3": cubic, "c": damping}
+    constants["rest"] = rest
     if vectors:
         constants |= zip(("n", "m"), vectors[1:], strict=True)
     spring = _add(model, name, what, a, rotations(a, b), constants,

@@ -7,7 +7,6 @@ from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
@@ -68,6 +67,8 @@ class Search:
         """Thresholds that are passed first in the last step; the run is at that instant then."""
         if not self.reached():
             return []
+        from scipy.optimize import brentq  # takes 0.1 s to load
+
         t, h = self.run.time, self.run.h
         if self._beyond(t) <= 0.0:      # the step alone has it so
             self.end_at(self.end)

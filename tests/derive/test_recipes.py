@@ -36,10 +36,10 @@ def followed(original: Path, tmp_path: Path, title: str) -> Path:
 def test_joint(original, tmp_path):
     """Its tests are those of the recipe; without a planar form or a picture they fail."""
     tree = followed(original, tmp_path, "A joint")
-    run(tree, DERIVE, "rope", "planar_rope")
-    assert "of 2 kernels hold" in sebody(tree, "check", "element_rope", "element_planar_rope")
-    run_tests(tree, "tests/model/test_rope.py", "tests/malformed/test_complete.py",
-              "tests/malformed/test_builders.py", "-k", "rope or complete")
+    run(tree, DERIVE, "cord", "planar_cord")
+    assert "of 2 kernels hold" in sebody(tree, "check", "element_cord", "element_planar_cord")
+    run_tests(tree, "tests/model/test_cord.py", "tests/malformed/test_complete.py",
+              "tests/malformed/test_builders.py", "-k", "cord or complete")
 
 
 def test_frame(original, tmp_path):

@@ -21,6 +21,8 @@ from malformed.tampering import (
     without,
 )
 
+from sebody.results.saving import VERSION
+
 
 def _part(kind: str, change: Callable[[list], Any]) -> Callable[[Path], None]:
     """The first part of a class in the description of a model."""
@@ -208,7 +210,7 @@ RESULT = {
     "no notes": Packed("no text notes", without("sebody/notes")),
     "an unknown member": Packed("has a member 'colour', which is unknown", member(
         "sebody/colour", np.zeros(2))),
-    "a version in words": Packed("is of version two, this program reads 7", text(
+    "a version in words": Packed(f"is of version two, this program reads {VERSION}", text(
         "sebody/notes", lambda said: said.update({"version": "two"}))),
     "notes without a failure": Packed("is damaged or no results file", text(
         "sebody/notes", lambda said: said.pop("failure") and None)),

@@ -7,13 +7,13 @@ from malformed.tampering import Packed, bomb, entry, member, raw, text, without
 from sebody.engine.clock import CONTROL
 
 RESTART = {
-    "negative control": Packed("holds -1 in control for grid", entry("control", 1, -1)),
+    "negative control": Packed("holds -1 in control for grid", entry("control", 0, -1)),
     "text control": Packed("in control, in place of whole numbers", member(
         "control", lambda old: old.astype(str))),
     "control of fractions": Packed("holds float64 in control", member(
         "control", lambda old: old + 0.25)),
     **{f"control {k} too large": Packed(f"in control for {CONTROL.names[k]}, outside 0 to", entry(
-        "control", k, 10**15)) for k in (0, 1, 2, 3, 6, 7, 14, 17, 18, 21, 22)},
+        "control", k, 10**15)) for k in (0, 1, 2, 5, 6, 13, 16, 17, 20, 21)},
     "another time": Packed("holds the time 77 after 4 steps of 0.05", entry("clock", 0, 77.0)),
     "NaN time": Packed("holds nan in clock for time", entry("clock", 0, np.nan)),
     "another step": Packed("steps of 1", entry("clock", 1, 1.0)),
@@ -49,8 +49,8 @@ RESTART = {
     "settings of brackets": Packed("brackets are nested deeper than 100", raw(
         "settings", "[" * 300_000)),
     "settings that are a list": Packed("is damaged or no restart file", raw("settings", "[]")),
-    "another version": Packed("is of version 8, this program reads 7", text(
-        "settings", lambda said: said.update({"version": 8}))),
+    "another version": Packed("is of version 9, this program reads 8", text(
+        "settings", lambda said: said.update({"version": 9}))),
     "a negative step at the start": Packed("the time step is -0.05", text(
         "settings", lambda said: said.update({"h": -0.05}))),
     "a step in words": Packed("the time step is 'short'", text(

@@ -213,5 +213,5 @@ def test_arguments_by_other_names_are_told(call, message):
     with pytest.raises(TypeError, match=message):
         call(model)
     assert not model.loads
-    with pytest.raises(TypeError, match="missing 1 required positional argument: 'to'"):
-        model.spring("a", stiffness=3.0)
+    with pytest.raises(TypeError, match="missing 1 required positional argument: 'inertia'"):
+        model.rigid_body("other", "b", 1.0)
