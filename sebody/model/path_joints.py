@@ -38,7 +38,8 @@ SAMPLES = 8         # places in each interval between knots from which the neare
 
 
 def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: float | None = None,
-               rate: float | None = None, inertia: float = 0.0, name: str | None = None) -> Joint:
+               rate: float | None = None, inertia: float = 0.0, name: str | None = None,
+               turns: str | None = None) -> Joint:
     """Point that stays on a path: `node` slides along flexible bodies, and turns freely.
 
     How far along the path it is, its way, is an unknown of its own, so the force on `node` is
@@ -62,12 +63,14 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
     name : str, optional
         Of its results, ``<name>.way``, ``<name>.rate``, ``<name>.force`` on the node and the like;
         by default ``path at <node>``.
+    turns : None
+        The node turns freely; anything else is refused.
 
     Raises
     ------
     InputError
-        A node off the path or of one of its bodies, a path of another model, or a start beyond its
-        ends.
+        A node that is to keep its orientation, off the path or of one of its bodies, a path of
+        another model, or a start beyond its ends.
 
     Examples
     --------
@@ -75,6 +78,10 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
     """
     a = known(model, node)
     what = f"path joint at {a.name!r}"
+    if turns is not None:
+        raise InputError(f"{what}: turns is {turns!r}, but a node on a path turns freely: leave it "
+                         "out, and put the node on two wheels that are attached to it, with a "
+                         "path_joint each")
     on = known_path(model, path, what)
     dof_block(a, "position")
     for piece in on.pieces:

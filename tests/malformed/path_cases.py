@@ -129,7 +129,9 @@ CASES = {
         "rate": [pair for pair in are("path joint at 'place': rate", *NO_NUMBER)
                  if pair[0] is not None],
         "inertia": not_negative("path joint at 'place': inertia"),
-        "name": names("path at place")}),
+        "name": names("path at place"),
+        "turns": are("path joint at 'place': turns", "with", "free", 3, "",
+                     also=", but a node on a path turns freely: leave it out")}),
     "path_joint with a start": Right(Model.path_joint, {
         "node": "place", "path": "open", "start": 0.0}, {
             "node": [("a", "path joint at 'a': the node is 3 away from path 'open': its place at "
