@@ -20,13 +20,14 @@ if TYPE_CHECKING:
     from sebody.model.surfaces import cylinder, plane, sphere
     from sebody.results.result import Result
     from sebody.runs.accuracy import simulate_within
+    from sebody.runs.phased_simulation import PhasedSimulation
     from sebody.runs.schemes import generalized_alpha, hht
     from sebody.runs.simulation import Simulation
     from sebody.runs.tolerance import Tolerance
     from sebody.runs.whole_runs import simulate
 
-__all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "Result", "SebodyError",
-           "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
+__all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "PhasedSimulation", "Result",
+           "SebodyError", "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
            "generalized_alpha", "harmonic", "hht", "piecewise", "plane", "ramp", "rest_to_rest",
            "simulate", "simulate_within", "sphere", "spline", "trapezoidal", "with_corners"]
 

@@ -14,7 +14,7 @@ from sebody.cli.scene_arguments import build_scene, check_distinct, check_pictur
 
 if TYPE_CHECKING:
     from sebody.results.result import Result
-    from sebody.runs.phases import Course
+    from sebody.runs.phased_simulation import PhasedSimulation
     from sebody.runs.simulation import Simulation
     from sebody.scenes.scene import Scene
 
@@ -101,7 +101,7 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
             else:
                 result = _within(scene, options, t_end, progress, start)
         except (SimulationError, Interrupted) as stop:
-            result = stop.result
+            result = cast("Result", stop.result)
             errors.append(str(stop))
         finally:
             bar.close()
@@ -109,8 +109,8 @@ def _simulated(scene: "Scene", options: argparse.Namespace) -> Outcome:
 
 
 def _simulation(scene: "Scene", options: argparse.Namespace,
-                start: "Result | None") -> "Simulation | Course":
-    from sebody.runs.phases import Course
+                start: "Result | None") -> "Simulation | PhasedSimulation":
+    from sebody.runs.phased_simulation import PhasedSimulation
     from sebody.runs.restart import resume
     from sebody.runs.schemes import generalized_alpha
     from sebody.runs.simulation import Simulation
@@ -120,11 +120,9 @@ def _simulation(scene: "Scene", options: argparse.Namespace,
     index = 3 if options.index is None else options.index
     scheme = generalized_alpha(_rho(options), index=index)
     every = 1 if options.every is None else options.every
-    if scene.model.switches:
-        return Course(scene.model, _step(scene, options), scheme, every, None, start,
-                      options.threads)
-    return Simulation(scene.model, _step(scene, options), scheme, every, start=start,
-                      threads=options.threads)
+    kind = PhasedSimulation if scene.model.switches else Simulation
+    return kind(scene.model, _step(scene, options), scheme, every, start=start,
+                threads=options.threads)
 
 
 def _within(scene: "Scene", options: argparse.Namespace, t_end: float,
@@ -163,13 +161,15 @@ def _t_end(scene: "Scene", options: argparse.Namespace) -> float:
     return t_end
 
 
-def _written(options: argparse.Namespace, scene: "Scene", simulation: "Simulation | Course | None",
-             result: "Result", errors: list[str]) -> tuple[list[str], list[str]]:
+def _written(options: argparse.Namespace, scene: "Scene",
+             simulation: "Simulation | PhasedSimulation | None", result: "Result",
+             errors: list[str]) -> tuple[list[str], list[str]]:
     """Write every file that is asked for, even if another one cannot be written."""
     from sebody.pictures.plots import save_picture
     from sebody.runs.restart import save_state
 
-    files = (("state", options.save, lambda path: save_state(cast("Simulation", simulation), path)),
+    files = (("state", options.save, lambda path: save_state(
+                 cast("Simulation | PhasedSimulation", simulation), path)),
              ("histories", options.output, result.save),
              ("picture", options.plot,
               lambda path: save_picture(result, path, scene.base, scene.tip)))
@@ -201,9 +201,6 @@ def _check(options: argparse.Namespace, scene: "Scene") -> None:
             raise InputError(f"the picture shows node {name!r}, which scene {scene.name!r} does "
                              f"not have: give its Scene base= and tip=, of "
                              f"{', '.join(scene.model.nodes)}")
-    if options.save and scene.model.switches:
-        raise InputError(f"{next(iter(scene.model.switches))!r} of scene {scene.name!r} lets go or "
-                         "locks, and no state of such a run can be saved: leave out --save")
     if options.accuracy is not None:
         if options.save or options.resume:
             raise InputError("--accuracy repeats the run with finer steps: leave out --save and "

@@ -37,5 +37,6 @@ def refuse_switches(model: Mechanism) -> None:
     if model.switches and not model.is_phase:
         name, switch = next(iter(model.switches.items()))
         raise InputError(
-            f"{name!r} acts {switch.words()}, which only simulate(model, h, t_end) follows: build "
-            "a model without this for it, with the parts that act")
+            f"{name!r} acts {switch.words()}, which only simulate(model, h, t_end) and "
+            "PhasedSimulation(model, h) follow: build a model without this for anything else, with "
+            "the parts that act")

@@ -7,7 +7,12 @@ from hashlib import sha256
 import numpy as np
 
 from sebody.basics.version import __version__
+from sebody.engine.state import State
+from sebody.engine.system import System
+from sebody.model.model import Model
+from sebody.model.numbering import Numbering
 from sebody.model.outside import CONSTANTS, values_read
+from sebody.runs.phased_simulation import PhasedSimulation
 from sebody.runs.simulation import Simulation
 from sebody.runs.user_faults import functions
 
@@ -16,18 +21,28 @@ PLACED = ("tasks", "periods", "offsets", "sensors", "reads", "steps", "factors",
           "scales", "seeds", "wires", "ends", "inputs", "limits", "parameters")
 
 
-def fingerprint(run: Simulation) -> str:
-    """Hash of what a model is, without addresses of compiled functions."""
-    system, model = run.system, run.model
+def fingerprint(run: Simulation | PhasedSimulation) -> str:
+    """Hash of what a model is, without addresses of compiled functions.
+
+    Of one with phases also of when its parts act, and of the sensors that tell it.
+    """
+    if isinstance(run, Simulation):
+        return _hashed(run.model, run.numbering, run.system, run.state)
+    switches = sorted(run.model.switches.items())
+    asked = [repr(run.model.sensors.get(one.release_when[0])) for _, one in switches]
+    parts = _hashed(run.model, run.numbering, run.system, run.phases[0].state), switches, asked
+    return sha256(repr(parts).encode()).hexdigest()
+
+
+def _hashed(model: Model, numbering: Numbering, system: System, state: State) -> str:
     kinds = [body.kernel for body in model.bodies.values()] + [
         e.kind for e in (*model.rigid_bodies.values(), *model.constraints, *model.loads)]
     written = [described(one.function) for _, one in functions(model)]
-    parts = [repr((run.numbering.names, kinds, written)).encode()] + [
+    parts = [repr((numbering.names, kinds, written)).encode()] + [
         array.tobytes() for array in (
             system.constants, system.g_unknown, system.table_times, system.table_pieces,
             system.series_times, system.series_values, system.corners, system.prescribed,
-            system.prescribed_factor, model.gravity_field,
-            run.state.q_start)]
+            system.prescribed_factor, model.gravity_field, state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
 
 

@@ -15,9 +15,9 @@ from sebody.model.time_functions import TimeFunction
 from sebody.results.recording import Recording
 
 
-def switch_times(model: Model, t_end: float) -> list[float]:
-    """Times before the end at which something lets go or locks, ascending."""
-    return sorted({t for switch in model.switches.values() for t in switch.times if t < t_end})
+def switch_times(model: Model) -> set[float]:
+    """Times at which something lets go or locks."""
+    return {t for switch in model.switches.values() for t in switch.times}
 
 
 def acting(model: Model, t: float) -> set[str]:

@@ -216,20 +216,8 @@ class Simulation:
         """
         if not self._unjudged and progress is None and self._piece(t_end):
             return self
-        self.flush()
-        user_faults.refuse_changed(self.model)
-        self._judge_teeth()
-        last = last_step(t_end, self.h, self.time, int(self.state.control.grid))
-        if abs(t_end / self.h - last) > OFF_GRID:
-            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
-                           f"the run ends at t = {last * self.h:.9g}")
-        if self.state.control.adaptive == 0:
-            for name, message in unseen(self.numbering, self.h, self.time, t_end):
-                self.watch.say(f"peak {name}", message)
-            for name, message in divided(self.numbering, self.h, self.time, t_end):
-                self.watch.say(f"rows {name}", message)
-            for name, message in untold(self.numbering, self.h, self.time, t_end):
-                self.watch.say(f"jump {name}", message)
+        last = self.last_step(t_end)
+        self._look_before(t_end)
         record = self.rows.record_until(last)
         self.sampling.stop_at(t_end)
         code = CHUNK
@@ -240,15 +228,46 @@ class Simulation:
             pass                        # the rows come first
         finally:
             self.rows.keep(record)
+        self._look_after(code == FAILED, code != DONE)
+        return self
+
+    def last_step(self, t_end: float) -> int:
+        """The grid step nearest to a time; the run says it if the time is off the grid.
+
+        Raises
+        ------
+        InputError
+            A time that is past.
+        """
+        last = last_step(t_end, self.h, self.time, int(self.state.control.grid))
+        if abs(t_end / self.h - last) > OFF_GRID:
+            self.watch.say("end", f"t = {t_end:.9g} is not a multiple of the step {self.h:.9g}: "
+                           f"the run ends at t = {last * self.h:.9g}")
+        return last
+
+    def _look_before(self, t_end: float) -> None:
+        """Refuse functions that have changed, and say what steps up to a time will not see."""
+        self.flush()
+        user_faults.refuse_changed(self.model)
+        self._judge_teeth()
+        if self.state.control.adaptive == 0:
+            for name, message in unseen(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"peak {name}", message)
+            for name, message in divided(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"rows {name}", message)
+            for name, message in untold(self.numbering, self.h, self.time, t_end):
+                self.watch.say(f"jump {name}", message)
+
+    def _look_after(self, failed: bool, stopped: bool) -> None:
+        """Look whether limits are exceeded in what was recorded last; raise what ended the run."""
         self.watch.look(self.model, self.numbering, self.rows.stretches[-1])
-        if code == FAILED:
+        if failed:
             self.failure = explained(self.model, self.system, self.state, self.numbering)
             raise SimulationError(self.failure, self.result())
-        if code != DONE:
+        if stopped:
             result = self.result()
             result.failure = f"interrupted at t = {self.time:.6g}: results up to this time are kept"
             raise Interrupted(result.failure, result)
-        return self
 
     def set_input(self, name: str, value: float) -> None:
         """Set the input of an actuator; it holds from the time reached until it is set again.

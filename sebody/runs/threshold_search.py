@@ -31,7 +31,7 @@ class Search:
     last : int
         Step of the grid that the run does not pass.
     end : float
-        Time at which a step ends if nothing lets go before.
+        Time at which a step ends if nothing lets go before, infinite without one.
     end_at : callable
         Lets a step end at a time.
     """
@@ -41,7 +41,7 @@ class Search:
         self.run, self.record, self.last, self.end = run, record, last, end
         self.thresholds, self.end_at = thresholds, end_at
         self._kept = [(own, own.copy()) for own in _arrays(run.state)] if thresholds else []
-        self._start = run.time
+        self._start, self._whole = run.time, True
 
     def step(self) -> int:
         """Take one step; the code of the loop."""
@@ -55,9 +55,17 @@ class Search:
 
     def keep(self) -> None:
         """Remember the state reached."""
+        self._whole = False
         for own, kept in self._kept:
             np.copyto(kept, own)
-        self._start = self.run.time
+        self._start, self._whole = self.run.time, True
+
+    def back(self) -> None:
+        """Return to the state that was remembered, unless that was interrupted."""
+        if self._whole:
+            for own, kept in self._kept:
+                np.copyto(own, kept)
+            self.run.aid.forget()
 
     def reached(self) -> list[Threshold]:
         """Thresholds that are passed in the state reached."""
@@ -84,9 +92,7 @@ class Search:
     def _beyond(self, t: float) -> float:
         """Largest excess at a time in the last step, at which the run is then."""
         run = self.run
-        for own, kept in self._kept:
-            np.copyto(own, kept)
-        run.aid.forget()
+        self.back()
         if t - self._start > NEAR * run.h:
             self.end_at(t)
             code = CHUNK

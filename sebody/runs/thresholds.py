@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
 
+DID = BROKE, LET_GO = "broke", "let go"
+
 
 class Excess(NamedTuple):
     """By how much the size of a force, or a quantity, is beyond a limit; relative to it."""
@@ -35,7 +37,7 @@ class Threshold(NamedTuple):
 
     name: str
     excess: Excess
-    did: str        # in words, when it is reached
+    did: str        # one of `DID`, when it is reached
 
 
 def thresholds_of(model: Mechanism, acts: set[str], read: Callable[[str], float | NDArray]
@@ -58,10 +60,10 @@ def thresholds_of(model: Mechanism, acts: set[str], read: Callable[[str], float 
         for kind, limit in zip(("force", "moment"), switch.breaks_at, strict=True):
             if limit < math.inf:
                 found.append(Threshold(name, Excess(read, f"{name}.{kind}", ">", limit),
-                                       "broke"))
+                                       BROKE))
         quantity, passes, limit = switch.release_when
         if quantity:
-            found.append(Threshold(name, Excess(read, quantity, passes, limit), "let go"))
+            found.append(Threshold(name, Excess(read, quantity, passes, limit), LET_GO))
             if np.size(_read(name, read, quantity)) != 1:
                 raise InputError(f"{name!r}: release_when reads {quantity!r}, which is several "
                                  f"numbers: give one of them, such as {quantity}.x or "

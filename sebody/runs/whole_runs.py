@@ -9,7 +9,7 @@ from sebody.basics.spelling import naming_arguments
 from sebody.engine.state import Scheme
 from sebody.model.model import Model
 from sebody.results.result import Result
-from sebody.runs.phases import Course
+from sebody.runs.phased_simulation import PhasedSimulation
 from sebody.runs.planning import LOGGED, Plan, planned
 from sebody.runs.simulation import Simulation
 from sebody.runs.tolerance import Tolerance, given
@@ -32,8 +32,8 @@ def simulate(model: Model, h: float, t_end: float, scheme: Scheme | None = None,
     """
     with showing(progress, t_end) as show:
         if isinstance(model, Model) and model.switches:
-            course = Course(model, h, scheme, output_every, tolerance, start, threads)
-            return course.run_to(t_end, show).result()
+            phased = PhasedSimulation(model, h, scheme, output_every, tolerance, start, threads)
+            return phased.run_to(t_end, show).result()
         run = planned_simulation(model, h, t_end, scheme, output_every, show, tolerance, start,
                                  threads)
         return run.run_to(t_end, show).result()

@@ -422,5 +422,6 @@ def test_a_misspelt_time():
     lambda model: planar_variant(model)], ids=["simulation", "equilibrium", "linear", "within",
                                               "ensemble", "planar"])
 def test_what_follows_no_switches_says_so(use):
-    with pytest.raises(InputError, match="'clutch' acts until t = 0.2, which only simulate"):
+    with pytest.raises(InputError, match="'clutch' acts until t = 0.2, which only simulate.* and "
+                                         "PhasedSimulation.* follow"):
         use(clutch(False, until=0.2))

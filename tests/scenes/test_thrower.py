@@ -37,5 +37,8 @@ def test_on_the_command_line(tmp_path, capsys):
     output = tmp_path / "run.npz"
     assert main(["run", "thrower", "--t-end", "0.12", "--output", str(output)]) == 0
     assert "latch let go; energy lost" in capsys.readouterr().out and output.exists()
-    assert main(["run", "thrower", "--save", str(tmp_path / "state.npz")]) == 2
-    assert "lets go or locks, and no state of such a run" in capsys.readouterr().err
+    state = str(tmp_path / "state.npz")
+    assert main(["run", "thrower", "--t-end", "0.11", "--save", state]) == 0
+    assert main(["run", "thrower", "--t-end", "0.12", "--resume", state]) == 0
+    said = capsys.readouterr().out
+    assert "latch let go; energy lost" in said and "to t = 0.12" in said
