@@ -18,6 +18,7 @@ from malformed.model_cases import spatial
 
 from sebody import (
     Model,
+    PhasedSimulation,
     Simulation,
     Tolerance,
     generalized_alpha,
@@ -151,10 +152,11 @@ RUNS = {
         "function": [*are("function", None, 3, "sin", also=": give a function of time"),
                      *have("time function of a load", np.linalg.norm, lambda a, b: a)],
         "corners": have("corners are", None, "abc", 3.0, [[1.0]], [NAN], ["1"])}),
-    "Simulation": Right(Simulation, {"model": Shared.model, "h": 0.1}, {
+    **{kind.__name__: Right(kind, {"model": Shared.model, "h": 0.1}, {
         "model": NO_MODEL, "h": STEP, "scheme": NO_SCHEME,
         "output_every": are("output_every", *NO_COUNT, 0, also=": give a whole number of steps"),
-        "tolerance": [*NO_TOLERANCE, *ERRORS, (Tolerance(0.0), "the tolerance allows no error")]}),
+        "tolerance": [*NO_TOLERANCE, *ERRORS, (Tolerance(0.0), "the tolerance allows no error")]})
+        for kind in (Simulation, PhasedSimulation)},
     "run_to": Right(run_to, {"t_end": 0.5}, {"t_end": END, "progress": PROGRESS}),
     "simulate": Right(simulate, {"model": Shared.model, "h": 0.1, "t_end": 0.5}, {
         "model": NO_MODEL, "h": [*STEP, (1e-300, "t_end is 0.5: that is 5e+299 steps"),
