@@ -1,5 +1,7 @@
 """Runs whose parts let go and lock, piece by piece: one phase after another."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 
@@ -79,7 +81,7 @@ class PhasedSimulation:
         return self.phases[-1].time
 
     def run_to(self, t_end: float, progress: Callable[[float], None] | bool | None = None
-               ) -> "PhasedSimulation":
+               ) -> PhasedSimulation:
         """Advance to the grid step nearest to `t_end`, through all that lets go and locks before.
 
         Raises
