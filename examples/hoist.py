@@ -9,10 +9,9 @@ Look at ``hoist.tension``, which is a share of the weight once the load hangs, a
 at ``hook.position.y``, and at ``motor.power``.
 """
 
-from sebody import Model, rest_to_rest
+from sebody import Model, plane, rest_to_rest
 from sebody.basics import inputs
 from sebody.fem import rectangle
-from sebody.model.surfaces import plane
 from sebody.scenes.scene import Scene
 
 TIP, MAST, DRUM, WINDING = (4.0, 3.0), (-1.5, 3.5), (-1.5, 0.3), 0.2     # m
