@@ -153,7 +153,7 @@ def torsion_spring(model: Mechanism, node: Joint | Node | str, stiffness: float 
     law = Special(force, damping, gap, tension_only, preload, between)
     constants: dict[str, float | NDArray]
     if law.given:
-        constants = law.tables(f"{what} at {a.name!r}", stiffness, cubic)
+        constants = {**law.tables(f"{what} at {a.name!r}", stiffness, cubic)}
     else:
         damping = cast(float, damping)
         _check(what, stiffness=stiffness, cubic=cubic, damping=damping)
