@@ -19,11 +19,12 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files.csv_files import csv_rows
 from sebody.basics.warned import warn
-from sebody.kernels.tables import HEAD, ROWS, SIZE, TERMS
+from sebody.kernels.tables import HEAD, ROWS, SIZE, TERMS, table_law
 
 Given: TypeAlias = "ArrayLike | str | Path | Callable[[float], float]"
 FINE = 1e-7         # of the largest force, by which rows may differ from a function
 STEP = 1e-3         # of an interval, in differences of a function
+ENERGY, FORCE, SLOPE = range(3)     # orders of `table_law`
 
 
 class Law(NamedTuple):
@@ -114,11 +115,12 @@ class Law(NamedTuple):
 
     def at(self, places: NDArray) -> NDArray:
         """Forces."""
-        return np.array([_evaluated(self.packed(), float(u), 1) for u in places])
+        table = self.packed()
+        return np.array([_law(table, float(u), FORCE) for u in places])
 
     def slopes_at(self, u: float) -> float:
         """Slope."""
-        return _evaluated(self.packed(), u, 2)
+        return _law(self.packed(), u, SLOPE)
 
     def with_row(self, u: float) -> Law:
         """The same law with a row at a place."""
@@ -192,7 +194,7 @@ class Law(NamedTuple):
                                 np.append(c, 0.0), energy])
         table[:HEAD] = len(h), self.before[0]
         table[HEAD:HEAD + rows.size] = rows.ravel()
-        table[HEAD + TERMS - 1:HEAD + rows.size:TERMS] -= _evaluated(table, 0.0, 0)
+        table[HEAD + TERMS - 1:HEAD + rows.size:TERMS] -= _law(table, 0.0, ENERGY)
         return table
 
 
@@ -205,15 +207,6 @@ def unpacked(table: NDArray) -> Law:
     return Law(u, forces, np.append(table[1], ends), behind)
 
 
-def _evaluated(table: NDArray, u: float, order: int) -> float:
-    """`table_law` in Python."""
-    count = int(table[0])
-    rows = table[HEAD:HEAD + TERMS * (count + 1)].reshape(-1, TERMS)
-    k = int(np.searchsorted(rows[:, 0], u)) - 1
-    place, force, slope, b, c, energy = rows[min(max(k, 0), count)]
-    if k < 0 or k >= count:
-        b = c = 0.0
-        slope = table[1] if k < 0 else slope
-    x = u - place
-    return float((energy + x * (force + x * (slope / 2 + x * (b / 3 + c * x / 4))),
-                  force + x * (slope + x * (b + c * x)), slope + x * (2 * b + 3 * c * x))[order])
+def _law(table: NDArray, u: float, order: int) -> float:
+    """`table_law` as Python runs it, without compiling."""
+    return float(getattr(table_law, "py_func", table_law)(table, u, order))

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.contract.layout import RECORD
 from sebody.model.model import Model
-from sebody.model.numbering import record_counts, stretch
 from sebody.model.parts import Element, Joint, Node
 from sebody.model.time_functions import TimeFunction
+from sebody.results.histories import histories
 from sebody.results.recording import Recording
 
 
@@ -82,25 +81,17 @@ def _as_now(one: Element, now: Recording) -> Element:
 
 def _place(node: Node, now: Recording) -> tuple[NDArray, NDArray]:
     """Position and rotation matrix of a node in a state."""
-    row, numbering = now.rows[-1], now.numbering
-    parts = RECORD.slices(record_counts(numbering))
-    x = node.point
-    if node.position is not None and node.position in numbering.dof_blocks:
-        x = row[parts["q"]][stretch(numbering, node.position)]
-    if node.rotation in numbering.rotations:
-        k = numbering.rotations[node.rotation]
-        return x, row[parts["R"]][9 * k:9 * k + 9].reshape(3, 3)
-    angle = _angle(node, now) if now.model.planar else 0.0
-    c, s = np.cos(angle), np.sin(angle)
-    return x, np.array([[c, -s], [s, c]]) if now.model.planar else np.eye(3)
+    of = histories(now)
+    x = node.point if node.position is None else of.whole(of.coordinates("q", node.position))[-1]
+    return x, of.whole(of.rotation(node.rotation))[-1]
 
 
 def _angle(node: Node, now: Recording) -> float:
     """Angle of a node of a planar model in a state."""
-    if node.rotation is None or node.rotation not in now.numbering.dof_blocks:
+    if node.rotation is None:
         return 0.0
-    q = now.recorded("q")[-1]
-    return float(q[stretch(now.numbering, node.rotation)][0])
+    of = histories(now)
+    return float(of.whole(of.coordinates("q", node.rotation))[-1, 0])
 
 
 def _pressed(load: Element, joints: Mapping[str, Joint]) -> Element:

@@ -328,23 +328,20 @@ class Simulation:
     def _advance(self, record: Record, last: int, t_end: float,
                  progress: Callable[[float], None] | None) -> int:
         """Call the loop until it is done or fails, in chunks of steps that take about `LOOK`."""
-        code, chunk, looked = CHUNK, FIRST_CHUNK, time.perf_counter()
+        code, chunk = CHUNK, FIRST_CHUNK
         while code not in (DONE, FAILED):
             began = time.perf_counter()
             code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
             self.aid.check()
             if self.plan.logged:
                 self.log.take(self.state)
-            now = time.perf_counter()
-            self.seconds += now - began
-            waited = max(now - looked, 1e-9)
-            if code in (CHUNK, DONE):
-                chunk = max(1, int(chunk * min(GROWTH, LOOK / waited)))
-                if self.plan.logged:
-                    chunk = min(chunk, self.plan.logged - 1)
-                if progress:
-                    progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
-                looked = time.perf_counter()
+            took = time.perf_counter() - began
+            self.seconds += took
+            chunk = max(1, int(chunk * min(GROWTH, LOOK / max(took, 1e-9))))
+            if self.plan.logged:
+                chunk = min(chunk, self.plan.logged - 1)
+            if progress and code != FAILED:
+                progress(1.0 if code == DONE else min(self.time / t_end, 1.0))
         return code
 
     def result(self) -> Result:
