@@ -3,16 +3,17 @@
 setuptools puts the finder of an editable install behind Python's own, which takes any folder named
 ``sebody`` in the folder of a script, such as a clone, for a namespace package. Here it comes first.
 
+Packages are the folders with an ``__init__.py`` in those that ``package-dir`` in pyproject.toml names.
 What an sdist holds besides packages, such as this folder, is in the ``MANIFEST.in`` beside it.
 """
 
 import base64
 import hashlib
+import tomllib
 import zipfile
 from pathlib import Path, PurePosixPath
 
-from setuptools import build_meta
-from setuptools.build_meta import *  # noqa: F403  # all hooks but the one below
+from setuptools import build_meta, setup
 from setuptools.command.egg_info import manifest_maker
 
 manifest_maker.template = ".build/MANIFEST.in"
@@ -21,9 +22,29 @@ IN_FRONT = ("import sys; sys.meta_path.sort("
             "key=lambda finder: getattr(finder, '__module__', '') != {module!r})\n")
 
 
+class _Backend(build_meta._BuildMetaBackend):
+    """setuptools' hooks, which find packages in several folders, as no setting of its own can."""
+
+    def run_setup(self, setup_script="setup.py"):
+        settings = tomllib.loads(Path("pyproject.toml").read_text())["tool"]["setuptools"]
+        setup(packages=[".".join([package, *file.parent.relative_to(folder).parts])
+                        for package, folder in settings["package-dir"].items()
+                        for file in sorted(Path(folder).rglob("__init__.py"))])
+
+
+_hooks = _Backend()
+get_requires_for_build_wheel = _hooks.get_requires_for_build_wheel
+get_requires_for_build_sdist = _hooks.get_requires_for_build_sdist
+get_requires_for_build_editable = _hooks.get_requires_for_build_editable
+prepare_metadata_for_build_wheel = _hooks.prepare_metadata_for_build_wheel
+prepare_metadata_for_build_editable = _hooks.prepare_metadata_for_build_editable
+build_wheel = _hooks.build_wheel
+build_sdist = _hooks.build_sdist
+
+
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
     """The editable wheel of setuptools, with a line more in its ``.pth`` file (PEP 660)."""
-    name = build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
+    name = _hooks.build_editable(wheel_directory, config_settings, metadata_directory)
     path = Path(wheel_directory, name)
     with zipfile.ZipFile(path) as wheel:
         files = {entry: wheel.read(entry) for entry in wheel.namelist()}

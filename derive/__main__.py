@@ -19,8 +19,7 @@ from pathlib import Path
 import sebody.generated
 from sebody.basics.files import replacing
 from sebody.basics.progress import Progress
-from sebody.contract.names import PREFIXES, motion_name
-from sebody.contract.names import PRODUCTS as OF_PRODUCTS
+from sebody.contract.names import PREFIXES, PRODUCTS as OF_PRODUCTS, motion_name
 from sebody.derive.compiler import Products, Variant, compile_kernel, file_name
 from sebody.derive.kernels.layouts import Layout, LayoutError
 from sebody.derive.kernels.manifest import ELEMENTS, PRODUCTS, SUPERELEMENTS

@@ -6,29 +6,31 @@ from sebody.basics.lazy import load_on_demand
 
 if TYPE_CHECKING:
     from sebody.basics.errors import (
-        InputError,
-        Interrupted,
-        LimitWarning,
-        SebodyError,
-        SimulationError,
-        WriteError,
+        InputError as InputError,
+        Interrupted as Interrupted,
+        LimitWarning as LimitWarning,
+        SebodyError as SebodyError,
+        SimulationError as SimulationError,
+        WriteError as WriteError,
     )
     from sebody.basics.version import __version__ as __version__
-    from sebody.model.histories import with_corners
-    from sebody.model.model import Model
-    from sebody.model.profiles import harmonic, piecewise, ramp, rest_to_rest, spline, trapezoidal
-    from sebody.model.surfaces import cylinder, plane, sphere
-    from sebody.results.result import Result
-    from sebody.runs.accuracy import simulate_within
-    from sebody.runs.phased_simulation import PhasedSimulation
-    from sebody.runs.schemes import generalized_alpha, hht
-    from sebody.runs.simulation import Simulation
-    from sebody.runs.tolerance import Tolerance
-    from sebody.runs.whole_runs import simulate
-
-__all__ = ["InputError", "Interrupted", "LimitWarning", "Model", "PhasedSimulation", "Result",
-           "SebodyError", "Simulation", "SimulationError", "Tolerance", "WriteError", "cylinder",
-           "generalized_alpha", "harmonic", "hht", "piecewise", "plane", "ramp", "rest_to_rest",
-           "simulate", "simulate_within", "sphere", "spline", "trapezoidal", "with_corners"]
+    from sebody.model.histories import with_corners as with_corners
+    from sebody.model.model import Model as Model
+    from sebody.model.profiles import (
+        harmonic as harmonic,
+        piecewise as piecewise,
+        ramp as ramp,
+        rest_to_rest as rest_to_rest,
+        spline as spline,
+        trapezoidal as trapezoidal,
+    )
+    from sebody.model.surfaces import cylinder as cylinder, plane as plane, sphere as sphere
+    from sebody.results.result import Result as Result
+    from sebody.runs.accuracy import simulate_within as simulate_within
+    from sebody.runs.phased_simulation import PhasedSimulation as PhasedSimulation
+    from sebody.runs.schemes import generalized_alpha as generalized_alpha, hht as hht
+    from sebody.runs.simulation import Simulation as Simulation
+    from sebody.runs.tolerance import Tolerance as Tolerance
+    from sebody.runs.whole_runs import simulate as simulate
 
 load_on_demand(__name__)

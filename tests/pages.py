@@ -31,6 +31,13 @@ class Block(NamedTuple):
     reason: str         # why it does not run, if it does not
 
 
+def public_names() -> dict[str, set[str]]:
+    """Names that users import, by package: the table that the API reference is made from, too."""
+    page = (ROOT / ".docs" / "names.md").read_text()
+    return {package: set(re.findall(r"`(\w+)`", names))
+            for package, names in re.findall(r"^\| `([\w.]+)` \| (.*) \|$", page, re.MULTILINE)}
+
+
 def all_pages() -> list[Path]:
     """Every page of the tree."""
     folders = (".docs", ".github", "sebody", "derive", "examples", "tests")

@@ -30,10 +30,10 @@ MAY_IMPORT = {
     "control": {"model"},           # its names
     "quantities": {*COMPILED, "engine", "reduction", "model"},
     "assembly": {*COMPILED, "engine", "reduction", "model", "quantities"},  # the options likewise
+    "parameters": {"reduction", "model", "assembly", "quantities"},
     "results": {*COMPILED, "engine", "fem", "reduction", "model", "assembly", "quantities"},
     "pictures": {"fem", "reduction", "model", "quantities", "results"},
     "names of results": {"results", "pictures"},
-    "parameters": {"reduction", "model", "assembly", "quantities"},
     "runs": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results"},
     "small_motion": {*COMPILED, "engine", "reduction", "model", "assembly", "quantities", "results",
                      "pictures", "runs"},
@@ -141,7 +141,13 @@ def test_imports_are_found():
 
 
 def test_every_folder_is_above_those_it_imports():
+    """And the page on folders has them in the same order."""
     order = list(MAY_IMPORT)
+    page = (ROOT / "sebody/README.md").read_text().partition("Within `sebody/`")[2]
+    listed = re.findall(r"`sebody/(\w+)(?:/|\.py)`", "".join(
+        line.split("|")[1] for line in page.splitlines() if line.startswith("| `")))
+    assert listed == [name for name in order if " " not in name and name not in (
+        "sebody", "generated", "scenes", "derive")]
     assert not [(high, low) for high, lower in MAY_IMPORT.items() for low in lower
                 if order.index(low) >= order.index(high)]
     assert {folder_of(name) for name in MODULES} == set(MAY_IMPORT)

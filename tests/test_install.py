@@ -71,15 +71,7 @@ def test_record_lists_what_the_wheel_holds(beside_a_clone):
             assert int(size) == (site / name).stat().st_size
 
 
-def test_every_package_is_installed():
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
-    names = {folder: name for name, folder in settings["package-dir"].items()}
-    found = {".".join([names[path.parts[0]], *path.parts[1:]]) for folder in FOLDERS
-             for path in (p.parent.relative_to(ROOT) for p in (ROOT / folder).rglob("__init__.py"))}
-    assert sorted(settings["packages"]) == sorted(found)
-
-
-def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
+def test_the_wheel_holds_every_module_and_files_that_are_none(tmp_path):
     """Templates, styles and scripts of pages; the file that tells type checkers to look."""
     clone = tmp_path / "clone"
     clone.mkdir()
@@ -93,6 +85,11 @@ def test_the_wheel_holds_files_that_are_no_modules(tmp_path):
         held = set(wheel.namelist())
     files = {str(path.relative_to(ROOT)) for path in (ROOT / "sebody/pictures/page").iterdir()}
     assert len(files) >= 13 and files <= held
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
+    assert {name for name in held if name.endswith(".py")} == {
+        "/".join([*package.split("."), *path.relative_to(ROOT / folder).parts])
+        for package, folder in packages["package-dir"].items()
+        for path in (ROOT / folder).rglob("*.py")}
     assert not [name for name in held if name.endswith((".md", ".png"))]
     assert any(name.endswith("-py3-none-any.whl") for name in done.stdout.split())
     assert "sebody/py.typed" in held

@@ -1,16 +1,12 @@
 """Names a user imports: what every package offers, and where."""
 
 import inspect
-import re
 from importlib import import_module
-from pathlib import Path
 
 import pytest
+from pages import public_names
 
-PAGE = (Path(__file__).parents[1] / ".docs" / "names.md").read_text()
-# packages and what users import from each, by the page that the API reference is made from, too
-PACKAGES = {package: set(re.findall(r"`(\w+)`", names))
-            for package, names in re.findall(r"^\| `([\w.]+)` \| (.*) \|$", PAGE, re.MULTILINE)}
+PACKAGES = public_names()
 
 
 def test_the_page_has_the_packages():

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from pages import public_names
 
 import sebody
 from sebody.cli.entry import COMMANDS
@@ -80,7 +81,7 @@ def test_a_model_and_a_run_load_what_they_need():
     assert not run & (UNUSED - {"sebody.model.variants"})
 
 
-@pytest.mark.parametrize("package", ["sebody", "sebody.analysis", "sebody.results", "sebody.io"])
+@pytest.mark.parametrize("package", public_names())
 def test_names_are_there_before_they_are_loaded(package):
     """For completion, `import *` and readers, whatever was loaded before."""
     code = (f"import {package} as package\nlisted = set(dir(package))\n"

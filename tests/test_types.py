@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from pages import public_names
 
 import sebody
 import sebody.derive
@@ -15,8 +16,6 @@ import sebody.generated
 import sebody.scenes
 
 ROOT = Path(__file__).parents[1]
-DOORS = ("sebody", "sebody.analysis", "sebody.fem", "sebody.io", "sebody.reduction",
-         "sebody.results")
 # a line of README's example, what a user may get wrong in it, and words of the remark on it
 WRONG = (
     ('model = Model()', 'model = Model(planar="yes")', '"planar"'),
@@ -79,7 +78,7 @@ def test_nothing_else_is_reported(remarks):
     assert len(remarks["wrong.py"]) == len(WRONG)
 
 
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("door", public_names())
 def test_public_functions_have_types(door):
     """Of all arguments and of what they return; methods of public classes, too."""
     module = importlib.import_module(door)

@@ -7,8 +7,13 @@ sources add, and files multiply no further than this table; any other combinatio
 
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
-from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
-from sebody.derive.kernels.catalogue import LAWS, LAWS_ALONG_PATHS, SMOOTH, SMOOTH_ALONG_PATHS
+from sebody.derive.kernels.catalogue import (
+    ELEMENTS as CATALOGUE,
+    LAWS,
+    LAWS_ALONG_PATHS,
+    SMOOTH,
+    SMOOTH_ALONG_PATHS,
+)
 from sebody.derive.kernels.motion import MOTIONS
 from sebody.derive.kernels.options import frame_traits
 from sebody.derive.kernels.path import PATH_LOADS, PATHS

@@ -1,7 +1,7 @@
 """Packages that load what they offer when it is asked for, so that programs start fast.
 
-A package lists its names as imports under ``if TYPE_CHECKING:``, where editors and type checkers
-find them, and calls `load_on_demand`.
+A package lists its names once, as imports under ``if TYPE_CHECKING:``, and calls `load_on_demand`.
+Names are imported ``as`` themselves, by which type checkers know them as names for users (PEP 484).
 """
 
 import ast
@@ -37,7 +37,9 @@ class _Package(ModuleType):
 
 
 def load_on_demand(package: str) -> None:
-    """Let a package load names on demand: those it imports under ``if TYPE_CHECKING:``.
+    """Let a package load names on demand, and offer them: those under ``if TYPE_CHECKING:``.
+
+    They are its ``__all__``, too, but for such as ``__version__``.
 
     Parameters
     ----------
@@ -46,10 +48,11 @@ def load_on_demand(package: str) -> None:
     """
     module = sys.modules[package]
     tree = ast.parse(module.__loader__.get_source(package))
-    vars(module)["_offered"] = {
-        alias.asname or alias.name: statement.module
-        for block in tree.body
-        if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
-        for statement in block.body if isinstance(statement, ast.ImportFrom)
-        for alias in statement.names}
+    offered = {alias.name: statement.module
+               for block in tree.body
+               if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+               for statement in block.body if isinstance(statement, ast.ImportFrom)
+               for alias in statement.names}
+    vars(module).update(_offered=offered,
+                        __all__=sorted(name for name in offered if not name.startswith("__")))
     module.__class__ = _Package

@@ -5,8 +5,6 @@ from typing import TYPE_CHECKING
 from sebody.basics.lazy import load_on_demand
 
 if TYPE_CHECKING:
-    from sebody.export.exporting import export
-
-__all__ = ["export"]
+    from sebody.export.exporting import export as export
 
 load_on_demand(__name__)

@@ -9,8 +9,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError, WriteError
 from sebody.basics.files import check_target, replacing
 from sebody.engine.state import Scheme
-from sebody.export import fmu as fmus
-from sebody.export import toolchain
+from sebody.export import fmu as fmus, toolchain
 from sebody.export.library import write_library
 from sebody.export.platforms import DEFAULT, NATIVE, PLATFORMS, PROCESSORS, host
 from sebody.export.prepared import Prepared, Run

@@ -28,8 +28,7 @@ from sebody.gradients.tables import OfTable, Part, port_of, weights
 from sebody.model.model import Model
 from sebody.model.variants.copying import copied
 from sebody.runs.outputs import Output
-from sebody.runs.schemes import checked as checked_scheme
-from sebody.runs.schemes import generalized_alpha
+from sebody.runs.schemes import checked as checked_scheme, generalized_alpha
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
 from sebody.runs.tolerance import Tolerance, given

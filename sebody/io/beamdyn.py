@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PPoly
 
 from sebody.basics.errors import InputError
-from sebody.basics.files.reading import existing
-from sebody.basics.files.reading import text as read_text
+from sebody.basics.files.reading import existing, text as read_text
 from sebody.basics.units import parsed_units
 from sebody.fem import Axis, FEModel, GeneralSection, Stations, beam_along
 from sebody.fem.materials import Material, doubt

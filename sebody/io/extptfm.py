@@ -18,8 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.files import check_target, replacing
-from sebody.basics.files.reading import existing
-from sebody.basics.files.reading import text as read_text
+from sebody.basics.files.reading import existing, text as read_text
 from sebody.io.grounded import AXES, Block, HeldBody, columns
 from sebody.io.load_series import LoadSeries
 from sebody.io.reading import Reading

@@ -40,12 +40,12 @@ from sebody.contract.law_row import (
     PORT,
     PRODUCTS,
     READ_PLACES,
+    READS as READ,
     SCALE,
     STATES,
     STRIDE,
+    WIDTH as ITS_WIDTH,
 )
-from sebody.contract.law_row import READS as READ
-from sebody.contract.law_row import WIDTH as ITS_WIDTH
 from sebody.contract.layout import (
     AT_CONSTANTS,
     AT_FRAME,

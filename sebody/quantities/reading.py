@@ -14,9 +14,7 @@ from numpy.typing import NDArray
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.counts import Counts
-from sebody.contract.layout import ENERGY as ENERGIES
-from sebody.contract.layout import MOTION as MOTION_ROW
-from sebody.contract.layout import OK, RESIDUAL, VELOCITY
+from sebody.contract.layout import ENERGY as ENERGIES, MOTION as MOTION_ROW, OK, RESIDUAL, VELOCITY
 from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, MOTION, NOW, RESIDUE, TOTAL
 from sebody.engine.arrays import Arrays
 from sebody.engine.evaluate import assemble, run_kernels, run_part, set_loads

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.motions import motions
-from sebody.contract.layout import MOTION as ROW
-from sebody.contract.layout import RECORD
+from sebody.contract.layout import MOTION as ROW, RECORD
 from sebody.contract.read_numbers import (
     FORCE,
     MOTION,

@@ -13,8 +13,7 @@ import numpy as np
 
 from sebody import Model
 from sebody.analysis import final
-from sebody.explore.sweep import batches
-from sebody.explore.sweep import executors as places
+from sebody.explore.sweep import batches, executors as places
 from sebody.explore.sweep.design import design
 from sebody.explore.sweep.variations import Distribution
 from sebody.scenes.scene import Scene

@@ -16,8 +16,7 @@ from sebody.analysis import Ensemble, equilibrium, linearize, maximum, resume, s
 from sebody.fem import hexahedral_block, planar_beam, rectangle, straight_beam
 from sebody.model.impacts import damping_of
 from sebody.model.profiles import rest_to_rest
-from sebody.model.variants import planar as planar_variant
-from sebody.model.variants import rigid as rigid_variant
+from sebody.model.variants import planar as planar_variant, rigid as rigid_variant
 from sebody.reduction import craig_bampton
 
 TURN = Rotation.from_rotvec((0.4, -0.9, 0.3)).as_matrix()

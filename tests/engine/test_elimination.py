@@ -8,8 +8,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import spsolve
 
 from sebody import Simulation, generalized_alpha
-from sebody.assembly import build as assembly
-from sebody.assembly import elimination_pattern
+from sebody.assembly import build as assembly, elimination_pattern
 from sebody.assembly.equal_bodies import evaluate_alone
 from sebody.contract.counts import LANES
 from sebody.contract.layout import RESIDUAL

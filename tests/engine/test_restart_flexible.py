@@ -13,8 +13,7 @@ from scipy.linalg import expm
 
 from sebody import Model, Simulation, Tolerance, generalized_alpha, piecewise, simulate
 from sebody.analysis import Ensemble, linearize, resume, save_state
-from sebody.assembly import batches
-from sebody.assembly import build as assembly
+from sebody.assembly import batches, build as assembly
 from sebody.fem import Section, straight_beam
 from sebody.fem.loads import line_load
 from sebody.reduction import craig_bampton, reduce

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from everyday import Place, bricard
 from helpers import multipliers_first
-from scipy.sparse import csc_matrix, diags
-from scipy.sparse import random as random_matrix
+from scipy.sparse import csc_matrix, diags, random as random_matrix
 from scipy.sparse.linalg import splu
 
 from sebody import Simulation

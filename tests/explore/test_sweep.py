@@ -13,8 +13,7 @@ from sebody import InputError, simulate
 from sebody.analysis import equilibrium, final, integral, maximum
 from sebody.cli.entry import main
 from sebody.explore import sweep as room
-from sebody.explore.sweep import Distribution, sobol, sweep
-from sebody.explore.sweep import executors as places
+from sebody.explore.sweep import Distribution, executors as places, sobol, sweep
 from sebody.explore.sweep.design import design
 from sebody.explore.sweep.picture import draw
 from sebody.explore.sweep.table import Table

@@ -5,8 +5,7 @@ import pytest
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
 
-from sebody.kernels import frame_search as locate
-from sebody.kernels import rotations
+from sebody.kernels import frame_search as locate, rotations
 
 SEEDS = range(6)
 # Searches end at rounding, Newton's last step being squared, so bounds are multiples of EPS,

@@ -11,8 +11,7 @@ from malformed import fe_files
 from malformed.read_files import SECTION, ball_scene, body, mechanism
 from malformed.run_cases import pendulum
 
-from sebody import Model, Result, Simulation, fem, io, reduction, results
-from sebody import analysis as an
+from sebody import Model, Result, Simulation, analysis as an, fem, io, reduction, results
 from sebody.explore.ensembles import Output
 from sebody.explore.sweep import sweep, variations
 from sebody.model import variants

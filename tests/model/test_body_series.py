@@ -15,10 +15,10 @@ from sebody import (
     Result,
     Simulation,
     Tolerance,
+    analysis as an,
     generalized_alpha,
     simulate,
 )
-from sebody import analysis as an
 from sebody.analysis import equilibrium, frequency_response, gradient, resume, save_state
 from sebody.fem import Section, rectangle, straight_beam
 from sebody.fem.loads import line_load

@@ -10,8 +10,7 @@ from sebody.assembly.numbering import number
 from sebody.contract.layout import ENERGY, RESIDUAL, TANGENT
 from sebody.contract.names import ANY, general_layout, layout_variant, superelement_name
 from sebody.derive.kernels.manifest import SUPERELEMENTS
-from sebody.fem import frame as fe_frame
-from sebody.fem import planar_beam, straight_beam
+from sebody.fem import frame as fe_frame, planar_beam, straight_beam
 from sebody.kernels.loader import load
 from sebody.model.frames import FRAMES
 from sebody.reduction import craig_bampton

@@ -23,8 +23,7 @@ from in_plane import (
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, simulate
-from sebody.fem import frame as beams
-from sebody.fem import rectangle
+from sebody.fem import frame as beams, rectangle
 from sebody.model.variants import copied, divide, keep_modes, planar
 from sebody.reduction import craig_bampton
 from sebody.results import Result

@@ -26,10 +26,10 @@ from sebody.verify.outside.jacket import (
     INTERFACE,
     INTERFACE_FREE,
     WITH_MASS,
+    body as jacket_body,
     jacket,
     matrices,
 )
-from sebody.verify.outside.jacket import body as jacket_body
 
 TURN = Rotation.from_rotvec((0.4, -0.7, 0.5)).as_matrix()
 SHIFT = np.array([12.0, -7.0, 30.0])

@@ -8,8 +8,7 @@ from scipy.spatial.transform import Rotation
 from sebody import InputError, Model, Result, simulate
 from sebody.assembly.numbering import number
 from sebody.contract.layout import RECORD
-from sebody.fem import Section, planar_beam
-from sebody.fem import frame as frame_of_beams
+from sebody.fem import Section, frame as frame_of_beams, planar_beam
 from sebody.model.numbering import record_counts
 from sebody.reduction import ReducedBody, craig_bampton
 from sebody.scenes import hinged_beam

@@ -16,8 +16,7 @@ from sebody.assembly.allocation import allocate
 from sebody.engine.mailbox import CALL
 from sebody.engine.matrix import refactorize, solve, sum_matrices
 from sebody.engine.state import ROTATED
-from sebody.runs import simulation
-from sebody.runs import threads as sharing
+from sebody.runs import simulation, threads as sharing
 from sebody.scenes import chain
 
 LINKS = 100     # with 1500 unknowns, two shares of 64 bodies

@@ -14,8 +14,7 @@ from sebody.scenes import four_bar
 from sebody.scenes.scene import Scene
 from sebody.verify import chart
 from sebody.verify.bench import peer
-from sebody.verify.chart import cases
-from sebody.verify.chart import references as reference_module
+from sebody.verify.chart import cases, references as reference_module
 from sebody.verify.chart.references import reference
 from sebody.verify.chart.timing import repeated
 

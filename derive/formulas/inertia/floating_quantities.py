@@ -11,8 +11,7 @@ from sebody.derive.form.arrays import Array, Place
 from sebody.derive.form.counts import N, hN, i
 from sebody.derive.form.spaces import Quantity
 from sebody.derive.form.steps import Stage
-from sebody.derive.formulas.inertia import floating_arrays as at
-from sebody.derive.formulas.inertia import floating_field as field
+from sebody.derive.formulas.inertia import floating_arrays as at, floating_field as field
 from sebody.derive.formulas.inertia.resultants import resultants
 from sebody.derive.formulas.quantities import Quantities
 

@@ -15,9 +15,7 @@ from sebody.derive.form.functions import (
 from sebody.derive.form.steps import Call, Stage, Step, call
 from sebody.derive.form.whole import Whole
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.inertia import floating_arrays as at
-from sebody.derive.formulas.inertia import floating_field as field
-from sebody.derive.formulas.inertia import slaved
+from sebody.derive.formulas.inertia import floating_arrays as at, floating_field as field, slaved
 from sebody.derive.formulas.inertia.floating_forces import ROWS, conjugate, coupled, to_free
 from sebody.derive.formulas.inertia.floating_quantities import (
     GEOMETRY,

@@ -22,8 +22,11 @@ import sympy as sp
 
 from sebody.contract.traits import InertiaTraits
 from sebody.derive.formulas.frames.frame import Frame
-from sebody.derive.formulas.inertia import floating_field as field
-from sebody.derive.formulas.inertia import floating_forces, floating_tangents
+from sebody.derive.formulas.inertia import (
+    floating_field as field,
+    floating_forces,
+    floating_tangents,
+)
 from sebody.derive.formulas.inertia.floating_arrays import PARTS, TRANSPOSES, counts_of_body
 from sebody.derive.formulas.inertia.floating_quantities import FloatingQuantities
 from sebody.derive.formulas.inertia.option import Inertia, InertiaOption, Local

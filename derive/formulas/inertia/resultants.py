@@ -10,8 +10,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from sebody.derive.form.arrays import Array, Place
-from sebody.derive.form.counts import deep, e, free, hn, j, stretching
-from sebody.derive.form.counts import resultants as counted
+from sebody.derive.form.counts import deep, e, free, hn, j, resultants as counted, stretching
 from sebody.derive.form.functions import ADD_BLOCKS_TIMES, ADD_PACKED, PACKED_TIMES, ROWS_TIMES
 from sebody.derive.form.spaces import Quantity, Space
 from sebody.derive.form.steps import Repeat, Stage, Step, call

@@ -2,8 +2,7 @@
 
 from sebody.compiler.decorators import compiled
 from sebody.compiler.inside.lanes import bits_of, spread
-from sebody.contract.layout import ENERGY as ENERGIES
-from sebody.contract.layout import RESIDUAL
+from sebody.contract.layout import ENERGY as ENERGIES, RESIDUAL
 from sebody.contract.member_row import RUNNING
 from sebody.contract.read_numbers import ENERGY, FORCE, TOTAL
 from sebody.engine.evaluate import run_kernels, run_part, set_loads, sum_forces

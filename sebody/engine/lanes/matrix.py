@@ -19,8 +19,7 @@ from sebody.engine.arrays import Arrays
 from sebody.engine.calls import call_refactorize, call_refactorize_together
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
 from sebody.engine.lanes.apart import CUT, GAVE_UP, RUNS
-from sebody.engine.lanes.together import EVALUATED as NEW_BODIES
-from sebody.engine.lanes.together import MADE, WANTED
+from sebody.engine.lanes.together import EVALUATED as NEW_BODIES, MADE, WANTED
 from sebody.engine.newton import OLDEST_ROTATED
 from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED, State
 from sebody.engine.step import FIRST_RENEWED, set_coefficients

@@ -32,8 +32,7 @@ from sebody.runs.failures import KEPT
 from sebody.runs.outputs import Output, forms
 from sebody.runs.simulation import Simulation
 from sebody.runs.steps import whole_steps
-from sebody.runs.tolerance import Tolerance
-from sebody.runs.tolerance import given as given_tolerance
+from sebody.runs.tolerance import Tolerance, given as given_tolerance
 
 
 @dataclass(eq=False)

@@ -20,8 +20,7 @@ from sebody.basics.progress import showing
 from sebody.basics.spelling import unknown
 from sebody.explore.ensembles import Output
 from sebody.explore.ensembles.work import processors
-from sebody.explore.sweep import executors as places
-from sebody.explore.sweep import sobol
+from sebody.explore.sweep import executors as places, sobol
 from sebody.explore.sweep.batches import EQUILIBRIUM, OF_RUN, Plan, check_plan, tasks_of
 from sebody.explore.sweep.design import Design, design
 from sebody.explore.sweep.table import Table

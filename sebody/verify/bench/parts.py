@@ -16,8 +16,7 @@ from sebody.basics import tabular
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import RESIDUAL, TANGENT
 from sebody.engine.evaluate import run_kernels
-from sebody.engine.matrix import refactorize
-from sebody.engine.matrix import solve as correction
+from sebody.engine.matrix import refactorize, solve as correction
 from sebody.engine.state import EVALUATED
 from sebody.runs.simulation import Simulation
 from sebody.scenes.scene import Scene

@@ -10,8 +10,7 @@ import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError
-from importlib.metadata import version as installed_version
+from importlib.metadata import PackageNotFoundError, version as installed_version
 from importlib.util import find_spec
 from io import StringIO
 from types import ModuleType

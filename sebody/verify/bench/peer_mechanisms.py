@@ -18,8 +18,7 @@ from exudyn.itemInterface import (
 )
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 
-from sebody.scenes import heavy_top as top
-from sebody.scenes import slider_crank as crank
+from sebody.scenes import heavy_top as top, slider_crank as crank
 from sebody.scenes.four_bar import GRAVITY, INERTIA
 from sebody.verify.bench.peer_models import SHEAR, Run, new_system, solve
 

@@ -28,11 +28,9 @@ from exudyn.itemInterface import (
 from scipy.sparse import csr_matrix
 
 from sebody.fem.hexahedron import hexahedral_block
-from sebody.scenes.chain import GRAVITY
-from sebody.scenes.chain import SECTION as LINK
+from sebody.scenes.chain import GRAVITY, SECTION as LINK
 from sebody.scenes.hinged_beam import SECTION, TORQUE
-from sebody.scenes.spherical_beam import LENGTH, PUSH
-from sebody.scenes.spherical_beam import TORQUE as SPHERICAL_TORQUE
+from sebody.scenes.spherical_beam import LENGTH, PUSH, TORQUE as SPHERICAL_TORQUE
 
 T_END = 30.0
 SHEAR = 5.0 / 6.0

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from stiffened_models import TURN as TURNED
-from stiffened_models import block
+from stiffened_models import TURN as TURNED, block
 
 from sebody import LimitWarning, Model, Simulation
 from sebody.analysis import equilibrium, modes
