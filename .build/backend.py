@@ -3,8 +3,8 @@
 setuptools puts the finder of an editable install behind Python's own, which takes any folder named
 ``sebody`` in the folder of a script, such as a clone, for a namespace package. Here it comes first.
 
-Packages are the folders with an ``__init__.py`` in those that ``package-dir`` in pyproject.toml names.
-What an sdist holds besides packages, such as this folder, is in the ``MANIFEST.in`` beside it.
+Packages are all folders with an ``__init__.py`` in those of ``package-dir`` in pyproject.toml. What
+an sdist holds besides packages, such as this folder, is in the ``MANIFEST.in`` beside it.
 """
 
 import base64
