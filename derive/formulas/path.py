@@ -18,6 +18,7 @@ act on p by ``w lam``, on the body at r by ``-w lam``, and on s by
 which is the whole law along the path: the force is normal to the deformed path by itself.
 """
 
+from collections.abc import Iterable
 from functools import cache
 from typing import NamedTuple
 
@@ -44,7 +45,7 @@ from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.symbolic.rotations import cross
-from sebody.derive.symbolic.variation import along, check_same, differential
+from sebody.derive.symbolic.variation import Rules, along, check_same, differential
 
 PATH = Part("path", ("path",), "knots, rows of the recovery and followers, see kernels/paths.py")
 TABLE = constant(PATH)
@@ -54,8 +55,9 @@ HEAD, SHAPES, SLOPES, BENDS, CHANGES, HEAD_1, SHAPES_1, BENDS_1 = (
     Array(name, (6, row)) for name in ("head", "shapes", "slopes", "bends", "changes", "head_1",
                                        "shapes_1", "bends_1"))
 LOAD = Part("load", ("D",), "force of a load with the factor 1, in global axes [force]")
-# in `HEAD`: the arm and its derivatives by the way, the weight and its derivatives
-PLACES = {"rh": 0, "rs": 3, "rss": 6, "share": 9, "share_s": 10, "share_ss": 11}
+# in `HEAD`: the arm or the angle and its derivatives by the way, the weight and its derivatives
+PLACES = {"rh": 0, "rs": 3, "rss": 6, "share": 9, "share_s": 10, "share_ss": 11,
+          "tau": 0, "tau_s": 3, "tau_ss": 6}
 
 
 class Steps(NamedTuple):
@@ -71,10 +73,10 @@ class Steps(NamedTuple):
 
 
 class Names:
-    """Quantities of a path by name."""
+    """Quantities of a path by name, with so many numbers in a row; one of an angle."""
 
-    def __init__(self, q: Quantities):
-        self._q = q
+    def __init__(self, q: Quantities, size: int):
+        self._q, self.size = q, size
         self.space = q.space
 
     def vector(self, name: str) -> Quantity:
@@ -95,9 +97,9 @@ class Names:
         axes = {"position": AXES[:2] if self.space.planar else AXES,
                 "rotation": AXES[2:] if self.space.planar else AXES, "mode": ("",)}[home]
         first = {"position": i3, "rotation": j3, "mode": k}[home]
-        size = 2 if self.space.planar else 3
-        return [self.space.quantity(f"{array.name}_{home}{axis}", "vector", home, array,
-                                    Place(size * (first + c))).symbols
+        kind = "scalar" if self.size == 1 else "vector"
+        return [self.space.quantity(f"{array.name}_{home}{axis}", kind, home, array,
+                                    Place(self.size * (first + c))).symbols
                 for c, axis in enumerate(axes)]
 
     def summed(self, result: Quantity, array: Array, of: dict[str, Quantity], what: str
@@ -105,8 +107,21 @@ class Names:
         """Sum over positions, rotations and modes of rows times coordinates."""
         return tuple(Stage(f"{what} by {home}s", home, adds=((result, sum(
             (shape * one for shape, one in zip(self.rows(array, home), quantity.kept,
-                                               strict=True)), sp.zeros(3, 1))),),
+                                               strict=True)), sp.zeros(*result.symbols.shape))),),
             continues=home != "position") for home, quantity in of.items())
+
+    def weigh(self, rules: Rules, ds: sp.Expr) -> None:
+        """Let the weight and its slope change with the way."""
+        w, ws, wss = (self.scalar(name).symbols for name in ("share", "share_s", "share_ss"))
+        rules |= along(w, ws * ds)
+        rules |= along(ws, wss * ds)
+
+    def bend(self, rules: Rules, homes: Iterable[str], ds: sp.Expr) -> None:
+        """Let the shapes change through the followers and with the way."""
+        for home in homes:
+            for shape, change, turn in zip(*(self.rows(array, home) for array in (
+                    SHAPES, CHANGES, SLOPES)), strict=True):
+                rules |= along(shape, change + turn * ds)
 
 
 @cache
@@ -114,7 +129,7 @@ def body_path(planar: bool, frame: FrameOption) -> Steps:
     """Derive the steps in a frame."""
     q = Quantities(Space(planar))
     chosen = frame.derive(q)
-    names = Names(q)
+    names = Names(q, 2 if planar else 3)
     located, gap = _located(q, chosen, names)
     forces = _forces(q, chosen, names)
     rate, second = _rates(q, chosen, names)
@@ -122,7 +137,8 @@ def body_path(planar: bool, frame: FrameOption) -> Steps:
     return Steps(q, located, forces, rate, second, moved, turned)
 
 
-def _coordinates(q: Quantities) -> dict[str, Quantity]:
+def coordinates(q: Quantities) -> dict[str, Quantity]:
+    """Local coordinates by what carries them."""
     return {"position": q.u, "rotation": q.psi, "mode": q.ym}
 
 
@@ -166,14 +182,14 @@ def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, .
         Stage("force on the body in frame axes", "element",
               sets=((names.vector("fp"), -w * (q.R0.symbols.T * lam)),)),
         *(Stage(f"forces conjugate to the local coordinates: {home}s", home,
-                sets=((of, _filled(of, [shape.dot(f) for shape in names.rows(SHAPES, home)])),))
+                sets=((of, filled(of, [shape.dot(f) for shape in names.rows(SHAPES, home)])),))
           for home, of in conjugate.items()),
         *forces_on_unknowns(q, frame, f, Stage(
             "moment of the force on the frame", "element", adds=((q.W, on_body),),
             continues=True)))
 
 
-def _filled(of: Quantity, values: list[sp.Expr]) -> sp.Matrix:
+def filled(of: Quantity, values: list[sp.Expr]) -> sp.Matrix:
     """Components where a quantity has some, zero elsewhere."""
     found = iter(values)
     return sp.Matrix([next(found) if isinstance(s, sp.Symbol) else 0 for s in of.symbols])
@@ -188,12 +204,12 @@ def _check_work(q: Quantities, arm: sp.Matrix, f: sp.Matrix, on_frame: sp.Matrix
 def _moved(q: Quantities, frame: Frame, names: Names, gap: tuple[Stage, ...],
            forces: tuple[Stage | Solve, ...]) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """Differentials of the gap and of the forces, by the chain rule."""
-    d, size = q.space.d, 2 if q.space.planar else 3
+    d = q.space.d
     chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
     ds = d(names.scalar("way")).symbols[0]
-    slope, w, ws = names.vector("rs"), names.scalar("share"), names.scalar("share_s")
+    slope = names.vector("rs")
     dr, dslope = names.vector("drp"), names.vector("rsd_y")
-    steps, of_y = _varied(q, frame, chain, names, size)
+    steps, of_y = varied(q, frame, chain, names)
     arm, bent = names.vector("dry"), names.vector("drsy")
     steps += [
         *names.summed(arm, SHAPES, of_y, "motion of the arm"),
@@ -203,20 +219,16 @@ def _moved(q: Quantities, frame: Frame, names: Names, gap: tuple[Stage, ...],
                     (dslope, bent.symbols + names.vector("rss").symbols * ds)))]
     chain.rules |= along(names.vector("rp").symbols, dr.symbols)
     chain.rules |= along(slope.symbols, dslope.symbols)
-    chain.rules |= along(w.symbols, ws.symbols * ds)
-    chain.rules |= along(ws.symbols, names.scalar("share_ss").symbols * ds)
+    names.weigh(chain.rules, ds)
     for name in ("xp", "lam"):
         chain.move(names.vector(name))
-    for home in of_y:
-        for shape, change, turn in zip(*(names.rows(array, home) for array in (
-                SHAPES, CHANGES, SLOPES)), strict=True):
-            chain.rules |= along(shape, change + turn * ds)
+    names.bend(chain.rules, of_y, ds)
     steps += [chain.step(step) for step in gap]
     return tuple(steps), tuple(chain.step(step) for step in forces)
 
 
-def _varied(q: Quantities, frame: Frame, chain: Linearizer, names: Names, size: int
-            ) -> tuple[list[Step], dict[str, Quantity]]:
+def varied(q: Quantities, frame: Frame, chain: Linearizer, names: Names
+           ) -> tuple[list[Step], dict[str, Quantity]]:
     """Variations of the local coordinates and of the shapes through the followers."""
     d = q.space.d
     steps: list[Step] = [
@@ -227,10 +239,11 @@ def _varied(q: Quantities, frame: Frame, chain: Linearizer, names: Names, size: 
               sets=((d(q.psi), elastic_rotation_variation(q)),)),
         Stage("differential: internal modes", "mode", sets=((d(q.ym), d(q.qm).symbols),)),
         *frame.differentials,
-        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.y.d, n, size, CHANGES)]
+        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.y.d, n, names.size,
+             CHANGES)]
     for quantity in (q.psi, q.ym, q.beta, q.beta0):
         chain.move(quantity)
-    return steps, {home: d(one) for home, one in _coordinates(q).items()}
+    return steps, {home: d(one) for home, one in coordinates(q).items()}
 
 
 def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
@@ -261,10 +274,7 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
     clock.rules |= along(names.vector("rp").symbols, arm.symbols)
     clock.rules |= along(slope.symbols, turned.symbols)
     clock.rules |= {names.scalar("wayd").symbols[0]: sdd}
-    for home in eta:
-        for shape, change, turn in zip(*(names.rows(array, home) for array in (
-                SHAPES, CHANGES, SLOPES)), strict=True):
-            clock.rules |= along(shape, change + turn * sd)
+    names.bend(clock.rules, eta, sd)
     accelerated = tuple(clock.step(step) for step in (*moving, velocity))
     g2 = names.vector("gdd")
     again = differential(weighted, along(w.symbols, ws.symbols * sd)
@@ -301,7 +311,7 @@ def path_load(planar: bool, frame: FrameOption) -> LoadSteps:
     sums of c_k dx_k, so that a series of loads costs little more than one.
     """
     q = Quantities(Space(planar))
-    chosen, names, size = frame.derive(q), Names(q), 2 if planar else 3
+    chosen, names = frame.derive(q), Names(q, 2 if planar else 3)
     way = q.space.quantity("amplitude", "scalar", "element", arrays.loads, Place(
         3 * arrays.index[first + agreed("AT_PORT")])).symbols[0]
     load = q.space.quantity("load", "vector", "element", constant(LOAD)).symbols
@@ -313,7 +323,7 @@ def path_load(planar: bool, frame: FrameOption) -> LoadSteps:
         Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
         Stage("way of the first load", "element", sets=((amplitude, sp.Matrix([way])),)),
         call("loads on the path in the frame", PATH_LOADS, TABLE, amplitude.symbols[0], arrays.y,
-             n, size, HEAD, SHAPES, SLOPES, BENDS, HEAD_1, SHAPES_1, BENDS_1),
+             n, names.size, HEAD, SHAPES, SLOPES, BENDS, HEAD_1, SHAPES_1, BENDS_1),
         Stage("sum of the arms", "element", sets=((arm, names.vector("rh").symbols),)), *inverses)
     on_frame = cross(arm.symbols, f.symbols)
     _check_work(q, arm.symbols, f.symbols, on_frame)
@@ -321,14 +331,14 @@ def path_load(planar: bool, frame: FrameOption) -> LoadSteps:
     forces = (
         Stage("force in frame axes", "element", sets=((f, -(q.R0.symbols.T * load)),)),
         *(Stage(f"forces conjugate to the local coordinates: {home}s", home,
-                sets=((of, _filled(of, [shape.dot(f.symbols)
+                sets=((of, filled(of, [shape.dot(f.symbols)
                                         for shape in names.rows(SHAPES, home)])),))
           for home, of in conjugate.items()),
         *forces_on_unknowns(q, chosen, share * f.symbols, Stage(
             "moment of the force on the frame", "element", adds=((q.W, on_frame),),
             continues=True)))
     chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
-    steps, of_y = _varied(q, chosen, chain, names, size)
+    steps, of_y = varied(q, chosen, chain, names)
     moved = names.vector("drp")
     steps += names.summed(moved, SHAPES, of_y, "motion of the arms")
     chain.rules |= along(arm.symbols, moved.symbols)

@@ -3,9 +3,10 @@
 from typing import NamedTuple
 
 from sebody.contract.layout import FRAME_CONSTANTS, Part
-from sebody.contract.names import path_kind, path_load_kind
+from sebody.contract.names import path_kind, path_load_kind, path_turn_kind
 from sebody.derive.formulas.frames.frame import FrameOption
 from sebody.derive.formulas.path import LOAD, PATH, LoadSteps, Steps, body_path, path_load
+from sebody.derive.formulas.path_turn import HELD, body_turn
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.options import FRAMES
@@ -14,6 +15,9 @@ from sebody.derive.passes.lower import Names
 
 # of the frames that points inside bodies have: others turn with a body only nearly
 PATHS = {path_kind(name, planar): (name, planar) for name, planar in BODY_CONTACTS.values()}
+
+PATH_TURNS = {path_turn_kind(name): (name, planar) for name, planar in BODY_CONTACTS.values()
+              if planar}
 
 PATH_LOADS = {path_load_kind(name, planar): (name, planar)
               for name, planar in BODY_CONTACTS.values()}
@@ -32,8 +36,13 @@ class BodyPath(NamedTuple):
     @property
     def declared(self) -> tuple[Part, ...]:
         """Constants beyond those of every frame."""
-        loads = (LOAD,) if self.name in PATH_LOADS else ()
-        return (*self.option.traits.constants, *loads, PATH)
+        own = (LOAD,) if self.name in PATH_LOADS else (HELD,) if self.turns else ()
+        return (*self.option.traits.constants, *own, PATH)
+
+    @property
+    def turns(self) -> bool:
+        """Of a node that turns with the path."""
+        return self.name in PATH_TURNS
 
     @property
     def constants(self) -> tuple[Part, ...]:
@@ -42,9 +51,10 @@ class BodyPath(NamedTuple):
 
 
 def path_kernel(name: str) -> BodyPath:
-    """Derive the kernel of a name."""
-    frame, planar = PATHS[name]
-    steps = body_path(planar, FRAMES[frame])
+    """Derive the kernel of a point on a path, or of a node that turns with one, by its name."""
+    frame, planar = (PATHS | PATH_TURNS)[name]
+    option = FRAMES[frame]
+    steps = body_turn(option) if name in PATH_TURNS else body_path(planar, option)
     return BodyPath(name, Layout(None, planar), frame, FRAMES[frame], opaque_names(steps.q), steps)
 
 

@@ -1,7 +1,7 @@
-"""The statements of the kernel of a point on a path of a body.
+"""The statements of the kernel of a point on a path of a body, and of a node that turns with it.
 
-The unknowns are those of the body, then the position of the point and the way, which the loops of
-the body do not see, and the multipliers.
+The unknowns are those of the body, then the position of the point, or the angle of the node, and
+the way, which the loops of the body do not see, and the multipliers.
 """
 
 import sympy as sp
@@ -48,7 +48,7 @@ def path_form(kernel: BodyPath) -> Kernel:
     steps, planar = kernel.steps, kernel.layout.planar
     lowering = Lowering(steps.q.space, kernel.names)
     located, forces, rate, second, moved, turned = map(lowering.statements, steps[1:])
-    own = _Own(planar)
+    own = _Own(kernel)
     tangent = (*own.directions(), *moved, *turned, *own.column())
     used = uses((*located, *forces, *rate, *second, *tangent)).arrays
     memory = Memory.of((*STATE, *used, DIRECTIONS[0]))
@@ -66,7 +66,7 @@ def path_form(kernel: BodyPath) -> Kernel:
         If(compared(counts.task, ">=", agreed("VELOCITY")), (
             *rate, *own.equations("phid"), If(compared(counts.task, "==", agreed("ACCELERATION")), (
                 *second, *own.equations("phidd"))))), matrix)
-    body = (*_counts(planar), *memory.points,
+    body = (*_counts(planar, len(own.point)), *memory.points,
             For(counts.element, Number(0), counts.count, of_element), Return(agreed("OK")))
     return Kernel(kernel.name, body, {}, memory.rows, memory.squares,
                   operations((*located, *forces)), operations(tangent))
@@ -95,9 +95,9 @@ def path_load_form(kernel: BodyPath) -> Kernel:
                   operations(tangent))
 
 
-def _counts(planar: bool) -> tuple[Let, ...]:
-    """Counts of the body: point, way and multipliers come behind its coordinates."""
-    behind = 2 * size_of("position", planar) + 1
+def _counts(planar: bool, size: int) -> tuple[Let, ...]:
+    """Counts of the body: point or angle, way and multipliers come behind its coordinates."""
+    behind = 2 * size + 1
     return (Let((counts.n,), (counts.width - behind,)), *read_counts(Layout(None, planar)),
             Let((counts.row,), (counts.padded(largest(counts.width, 9 * counts.ROTATIONS)),)))
 
@@ -117,26 +117,30 @@ def _pointers() -> tuple[Statement, ...]:
 class _Own:
     """What comes behind the coordinates of the body, in components."""
 
-    def __init__(self, planar: bool) -> None:
-        self.axes = "xyz"[:size_of("position", planar)]
+    def __init__(self, kernel: BodyPath) -> None:
+        self.axes = [f"_{axis}" for axis in "xyz"[:size_of("position", kernel.layout.planar)]]
+        self.node, self.force, self.kept = ("xp", "vp", "ap"), "lam", ["tangent"]
+        if kernel.turns:
+            self.axes, self.force, self.kept = [""], "mu", []
+            self.node = "theta", "thetad", "thetadd"
         size = len(self.axes)
         self.point = [counts.n + k for k in range(size)]
         self.way = counts.n + size
         self.multipliers = [counts.n + size + 1 + k for k in range(size)]
 
     def _vector(self, name: str) -> list[sp.Symbol]:
-        return [sp.Symbol(f"{name}_{axis}") for axis in self.axes]
+        return [sp.Symbol(name + axis) for axis in self.axes]
 
     def loads(self) -> tuple[Statement, ...]:
-        """Position of the point, the way, their rates, and the multipliers."""
+        """Position of the point or angle, the way, their rates, and the multipliers."""
         listed: list[Statement] = []
-        for row, point, way in zip(STATE, ("xp", "vp", "ap"), ("way", "wayd", "waydd"),
+        for row, point, way in zip(STATE, self.node, ("way", "wayd", "waydd"),
                                    strict=True):
             listed += [Set((s,), (row[at],)) for s, at in zip(self._vector(point), self.point,
                                                               strict=True)]
             listed.append(Set((sp.Symbol(way),), (row[self.way],)))
         listed += [Set((s,), (arrays.qe[at],)) for s, at in zip(
-            self._vector("lam"), self.multipliers, strict=True)]
+            self._vector(self.force), self.multipliers, strict=True)]
         return tuple(listed)
 
     def stored(self) -> tuple[Statement, ...]:
@@ -144,7 +148,7 @@ class _Own:
         kept = ARGUMENTS["index"][counts.first + agreed("AT_FRAME")]
         return (*self._forces(""), *self.equations("phi"),
                 *(Set((ARGUMENTS["frames"][kept + k],), (s,))
-                  for k, s in enumerate(self._vector("tangent"))))
+                  for name in self.kept for k, s in enumerate(self._vector(name))))
 
     def equations(self, name: str) -> tuple[Statement, ...]:
         """The equations, or their rates."""
@@ -154,11 +158,11 @@ class _Own:
     def directions(self) -> tuple[Statement, ...]:
         """Directions of a column in variables."""
         dqe = DIRECTIONS[0]
-        return (*(Set((s,), (dqe[at],)) for s, at in zip(self._vector("dxp"), self.point,
-                                                        strict=True)),
+        return (*(Set((s,), (dqe[at],)) for s, at in zip(
+                    self._vector(f"d{self.node[0]}"), self.point, strict=True)),
                 Set((sp.Symbol("dway"),), (dqe[self.way],)),
-                *(Set((s,), (dqe[at],)) for s, at in zip(self._vector("dlam"), self.multipliers,
-                                                        strict=True)))
+                *(Set((s,), (dqe[at],)) for s, at in zip(
+                    self._vector(f"d{self.force}"), self.multipliers, strict=True)))
 
     def column(self) -> tuple[Statement, ...]:
         """The column: forces and equations with their factors; columns of multipliers have that of

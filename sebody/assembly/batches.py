@@ -244,7 +244,7 @@ def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
     """The row of constants on a path: what places the frame, forces that move, and the path."""
     assert element.path is not None
     carrier, own = element.path.here.carrier, dict(element.constants)
-    path = path_numbers(element.path.path, element.path.piece, "axles" in own)
+    path = path_numbers(element.path.path, element.path.piece, "axles" in own, element.path.turns)
     if "axles" in own:
         axles = np.asarray(own.pop("axles"))
         path = np.concatenate([path, [len(axles)], axles.ravel()])
@@ -263,7 +263,10 @@ def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
 def _matrices(numbering: Numbering, element: Element) -> list[int]:
     """Numbers of the rotation matrices; on planar bodies angles are counted by zeros."""
     if element.body is not None or any(element.carried):
-        return [numbering.rotations.get(t, 0) for t in element.dof_blocks if t.rotational]
+        blocks = element.dof_blocks
+        if element.path is not None:        # the angle of a node behind the body is an unknown
+            blocks = blocks[:element.carried[0]]
+        return [numbering.rotations.get(t, 0) for t in blocks if t.rotational]
     return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]
 
 

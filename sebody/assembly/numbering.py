@@ -142,14 +142,15 @@ class _Order:
         for one in self._sharing:
             if one.shares is constraint:
                 self.multipliers[one] = self.multipliers[constraint]
-        if constraint in self._ways:        # behind the multipliers: it has no mass for a pivot
-            self.place(self._ways[constraint])
+        way = self._ways.get(constraint)        # behind all its multipliers: no mass for a pivot
+        if way and all(c in self.multipliers for c, one in self._ways.items() if one is way):
+            self.place(way)
 
 
 def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, list[int]]:
     """Multipliers of the joint whose reaction presses an element."""
     return {load: [multipliers[c] + k for c in load.pressed_by.constraints
-                   for k in range(c.multipliers)]
+                   if not (c.path and c.path.turns) for k in range(c.multipliers)]
             for load in model.loads if load.pressed_by is not None}
 
 

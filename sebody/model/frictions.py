@@ -230,7 +230,8 @@ def _parts(model: Mechanism, joint: Joint, sliding: bool, what: str
                          "joints or in drives")
     a, b = joint.node, joint.to
     if joint.kind == "path":
-        return [(one.attachments[-1:], {}) for one in joint.constraints]
+        return [(one.attachments[-1:], {}) for one in joint.constraints
+                if one.path and not one.path.turns]
     if sliding:
         return [(joint.way.attachments, {"e": joint.way.direction})]
     if joint.kind == "cylindrical":

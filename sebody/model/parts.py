@@ -215,12 +215,13 @@ class Path:
 class OnPath(NamedTuple):
     """What makes an element of a point on a path, or of forces: one for each piece.
 
-    Elements of a point share its equations.
+    Elements of a point share its equations, and those of a node that turns with the path theirs.
     """
 
     path: Path
     piece: int
     way: DofBlock | None    # hidden: how far along the path the point is; none of forces
+    turns: bool = False     # with the tangent of the path, apart from being on it
 
     @property
     def here(self) -> PathPiece:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.contract.names import path_kind
+from sebody.contract.names import path_kind, path_turn_kind
 from sebody.model import motions
 from sebody.model.arguments import chosen_name, dof_block, known, known_joint
 from sebody.model.extent import extent
@@ -26,9 +26,11 @@ from sebody.model.parts import (
     Node,
     OnPath,
     Path,
+    Superelement,
     positions,
+    rotations,
 )
-from sebody.model.path_tables import curve
+from sebody.model.path_tables import angle_at, curve, rotations_of
 from sebody.model.paths import known_path
 
 PATH = "path"       # kind of these joints
@@ -37,10 +39,10 @@ POLISHED = 12       # Newton's steps to it
 SAMPLES = 8         # places in each interval between knots from which the nearest one is looked for
 
 
-def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: float | None = None,
-               rate: float | None = None, inertia: float = 0.0, name: str | None = None,
-               turns: str | None = None) -> Joint:
-    """Point that stays on a path: `node` slides along flexible bodies, and turns freely.
+def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str | None = None,
+               start: float | None = None, rate: float | None = None, inertia: float = 0.0,
+               name: str | None = None) -> Joint:
+    """Point that stays on a path: `node` slides along flexible bodies, and turns freely or not.
 
     How far along the path it is, its way, is an unknown of its own, so the force on `node` is
     normal to the deformed path unless something acts along it. For a straight line that is fixed
@@ -53,6 +55,11 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
         A node that is not one of the path's own bodies; on the path at the start.
     path : Path or str
         Of `path`.
+    turns : {"with"}, optional
+        In a plane: the node turns with the tangent of the path, to which it keeps the angle that it
+        has at the start, by one more equation. The moment that this takes is in ``<name>.moment``;
+        it pushes the node along the path by itself times the curvature. By default the node turns
+        freely.
     start : float, optional
         The way at the start [length]; by default that of the nearest place. Give it where the path
         comes by the same place twice.
@@ -63,14 +70,12 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
     name : str, optional
         Of its results, ``<name>.way``, ``<name>.rate``, ``<name>.force`` on the node and the like;
         by default ``path at <node>``.
-    turns : None
-        The node turns freely; anything else is refused.
 
     Raises
     ------
     InputError
-        A node that is to keep its orientation, off the path or of one of its bodies, a path of
-        another model, or a start beyond its ends.
+        A node off the path or of one of its bodies, a path of another model, a start beyond its
+        ends, or a node that is to turn with a path in space or of FE nodes without rotations.
 
     Examples
     --------
@@ -78,10 +83,6 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
     """
     a = known(model, node)
     what = f"path joint at {a.name!r}"
-    if turns is not None:
-        raise InputError(f"{what}: turns is {turns!r}, but a node on a path turns freely: leave it "
-                         "out, and put the node on two wheels that are attached to it, with a "
-                         "path_joint each")
     on = known_path(model, path, what)
     dof_block(a, "position")
     for piece in on.pieces:
@@ -94,6 +95,8 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
                              f"which path {on.name!r} goes along: give a node of its own at this "
                              "place")
     wheels = inputs.number(inertia, f"{what}: inertia", least=0)
+    if turns is not None:
+        _check_turns(model, what, a, on, turns)
     begins = _start(model, what, a, on, start)
     name = named(model, name, PATH, a)
     way = DofBlock(f"{name}.way", np.array([begins]), np.zeros(1))
@@ -109,6 +112,8 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
             piece.attachments + positions(a) + (Attachment(hidden, "position"),), {},
             0 if equations else model.dimension, path=OnPath(on, k, way),
             shares=equations[0] if equations else None))
+    if turns is not None:
+        equations += _turning(name, a, on, way, hidden)
     carrier = on.pieces[0].carrier
     to = carrier if isinstance(carrier, Node) else carrier.nodes[carrier.reduced.position_nodes[0]]
     joint = Joint(name, tuple(equations), a, to, None, PATH)
@@ -124,6 +129,49 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, start: floa
             chosen_name(model, None, f"ends of {name}"), "way_stop",
             joint.constraints[0].attachments[-1:], {**on.buffers, "lower": low, "upper": high}))
     return joint
+
+
+def _check_turns(model: Mechanism, what: str, a: Node, path: Path, turns: object) -> None:
+    """Refuse a node that cannot turn with a path.
+
+    Raises
+    ------
+    InputError
+        In space, a node without a rotation or on which a body of the path turns, or FE nodes
+        without rotations.
+    """
+    inputs.choice(turns, f"{what}: turns", ("with",))
+    if not model.planar:
+        raise InputError(f"{what}: turns='with' is of models in a plane: leave it out, and put the "
+                         "node on two wheels that are attached to it, with a path_joint each")
+    rotation = dof_block(a, "rotation")
+    for piece in path.pieces:
+        if any(one.dof_block is rotation for one in piece.attachments):
+            raise InputError(f"{what}: turns='with', but the node turns as a node of "
+                             f"{piece.carrier.name!r} does, which carries path {path.name!r}: "
+                             "leave turns= out, or give a node of its own")
+        if isinstance(piece.carrier, Superelement) and not rotations_of(piece).size:
+            raise InputError(f"{what}: turns='with', but FE nodes of superelement "
+                             f"{piece.carrier.name!r} have no rotations: leave turns= out, and put "
+                             "the node on two wheels that are attached to it, with a path_joint "
+                             "each")
+
+
+def _turning(name: str, a: Node, path: Path, way: DofBlock, hidden: Node) -> list[Element]:
+    """Elements of a node that turns with a path, of one equation."""
+    at = float(way.start[0])
+    on = _piece_at(path, at)
+    held = angle_at(path, on, at - path.pieces[on].offset)
+    equations: list[Element] = []
+    for k, piece in enumerate(path.pieces):
+        carrier = piece.carrier
+        frame = "converged_mean" if isinstance(carrier, Node) else FRAMES[carrier.frame].kernel
+        equations.append(Element(
+            name, path_turn_kind(frame),
+            piece.attachments + rotations(a) + (Attachment(hidden, "position"),),
+            {"held": held}, 0 if equations else 1,
+            path=OnPath(path, k, way, True), shares=equations[0] if equations else None))
+    return equations
 
 
 def drive_way(model: Mechanism, joint: Joint | str, motion: Source, name: str | None = None
@@ -201,12 +249,17 @@ def _start(model: Mechanism, what: str, a: Node, path: Path, start: float | None
 
 def place_at(path: Path, way: float) -> NDArray:
     """The place on a path at the start, global axes; straight on beyond its ends."""
-    k = max(sum(way >= piece.offset for piece in path.pieces) - 1, 0)
+    k = _piece_at(path, way)
     piece, of = path.pieces[k], curve(path, k)
     local = way - piece.offset
     inside = float(np.clip(local, 0.0, piece.ways[-1]))
     place: NDArray = of(inside) + (local - inside) * of(inside, 1)
     return place
+
+
+def _piece_at(path: Path, way: float) -> int:
+    """Number of the piece of a path at a way; beyond its ends of the outer one."""
+    return max(sum(way >= piece.offset for piece in path.pieces) - 1, 0)
 
 
 def _nearest(path: Path, point: NDArray) -> float:

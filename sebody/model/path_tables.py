@@ -26,12 +26,14 @@ class Rows(NamedTuple):
     followers: NDArray      # matrices Q_b, (m, n, n)
 
 
-def path_numbers(path: Path, k: int, forces: bool = False) -> NDArray:
+def path_numbers(path: Path, k: int, forces: bool = False, angles: bool = False) -> NDArray:
     """The row of constants of piece k of a path, see `sebody.kernels.paths`.
 
-    Of `forces`: these act from end to end of a path alone, unless it goes on on the ground.
+    Of `forces`: these act from end to end of a path alone, unless it goes on on the ground. Of
+    `angles`, in a plane: rows have the angle of the tangent in place of a point.
     """
-    piece, rows = path.pieces[k], rows_of(path.pieces[k])
+    piece = path.pieces[k]
+    rows = angles_of(piece) if angles else rows_of(piece)
     half, length = path.blend / 2, piece.ways[-1]
     first = (-half, half) if k else (-NO_EDGE, -NO_EDGE)
     last = ((length - half, length + half) if k < len(path.pieces) - 1 else
@@ -61,9 +63,35 @@ def rows_of(piece: PathPiece) -> Rows:
     Phi = recovery.displacement(z, places).transpose(1, 0, 2)
     X = recovery.points[places] - body.alpha @ held_points(body)
     values = np.concatenate([X[:, None], Phi], axis=1)
-    turned = recovery.rotation(z, places).transpose(1, 0, 2)
+    turned = rotations_of(piece)
     along = _slopes(piece.ways, X[:, None], None)[:, 0]
     return Rows(values, _slopes(piece.ways, values, _ends(along, turned)), followers)
+
+
+def angles_of(piece: PathPiece) -> Rows:
+    """Rows of the angle of the tangent of a piece in a plane, to axes of its body or node.
+
+    The first row is that of the path at the start, the others are rotations of the FE nodes.
+    """
+    along = rows_of(piece).slopes[:, 0]
+    start = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))[:, None, None]
+    if isinstance(piece.carrier, Node):
+        n = piece.carrier_width
+        turned, followers = np.zeros((len(start), n, 1)), np.zeros((0, n, n))
+    else:
+        turned, followers = rotations_of(piece), followers_of(piece.carrier)
+    values = np.concatenate([start, turned], axis=1)
+    return Rows(values, _slopes(piece.ways, values, None), followers)
+
+
+def rotations_of(piece: PathPiece) -> NDArray:
+    """Rotations of the FE nodes of a piece on a body, (K, N, 1 or 3); (K, N, 0) if they have none.
+    """
+    body = piece.carrier
+    assert not isinstance(body, Node)
+    z = np.eye(len(body.reduced.stiffness) + len(followers_of(body)))
+    turned: NDArray = recovery_of(body).rotation(z, list(piece.places)).transpose(1, 0, 2)
+    return turned
 
 
 def recovery_of(body: Superelement) -> Recovery:
@@ -98,6 +126,16 @@ def _slopes(ways: NDArray, values: NDArray, turned: NDArray | None) -> NDArray:
         slopes[:, 1:] = turned if len(ways) == 2 else CubicSpline(
             ways, values[:, 1:], bc_type=((1, turned[0]), (1, turned[-1])))(ways, 1)
     return slopes
+
+
+def angle_at(path: Path, k: int, way: float) -> float:
+    """Angle of the tangent of a piece at the start, by the way along it; straight on beyond ends.
+    """
+    from scipy.interpolate import CubicHermiteSpline
+
+    piece, rows = path.pieces[k], angles_of(path.pieces[k])
+    of = CubicHermiteSpline(piece.ways, rows.values[:, 0, 0], rows.slopes[:, 0, 0])
+    return float(of(np.clip(way, 0.0, piece.ways[-1])))
 
 
 def curve(path: Path, k: int) -> CubicHermiteSpline:

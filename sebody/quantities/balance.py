@@ -97,7 +97,7 @@ class Balance:
         """
         total: list[Number] = []
         for one in joint.constraints:
-            if one.path is not None:
+            if one.path is not None and not one.path.turns:
                 own = [self._of.recorded("frames", k) for k in self._of.numbering.memories[one]]
                 total = plus(total, own) if total else own
         return total

@@ -120,6 +120,9 @@ CASES = {
                  ("far", "path 'far' is unknown"),
                  ("rail", "path joint at 'place': the node is"),
                  (_foreign_path(), "path 'curve' is of another model")],
+        "turns": [("free", "path joint at 'place': turns 'free' is unknown: use 'with'"),
+                  (3, "turns 3 is unknown: use 'with'"), ("", "turns '' is unknown: use 'with'"),
+                  ("with", "path joint at 'place': turns='with' is of models in a plane")],
         "start": [*[pair for pair in are("path joint at 'place': start", *NO_NUMBER)
                     if pair[0] is not None],
                   (-1.0, "start is -1, beyond the ends of path 'curve', 0 and 2.4"),
@@ -129,9 +132,7 @@ CASES = {
         "rate": [pair for pair in are("path joint at 'place': rate", *NO_NUMBER)
                  if pair[0] is not None],
         "inertia": not_negative("path joint at 'place': inertia"),
-        "name": names("path at place"),
-        "turns": are("path joint at 'place': turns", "with", "free", 3, "",
-                     also=", but a node on a path turns freely: leave it out")}),
+        "name": names("path at place")}),
     "path_joint with a start": Right(Model.path_joint, {
         "node": "place", "path": "open", "start": 0.0}, {
             "node": [("a", "path joint at 'a': the node is 3 away from path 'open': its place at "

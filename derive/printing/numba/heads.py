@@ -91,18 +91,21 @@ def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
 
 
 def path_head(given: BodyPath, kernel: Kernel) -> Head:
-    """Of a point on a path of a body: any layout, one frame."""
-    planar = given.layout.planar
+    """Of a point on a path of a body, or a node that turns with it: any layout, one frame."""
+    planar, turns = given.layout.planar, given.turns
+    size = 1 if turns else 2 if planar else 3
     return Head(
-        "Element kernel: a point stays on a path of a body, at a way that is an unknown",
+        "Element kernel: a node turns with a path of a body, at a way that is an unknown" if turns
+        else "Element kernel: a point stays on a path of a body, at a way that is an unknown",
         (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
          "modes.", f"Frame: {given.option.traits.summary}."),
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
-         "WAY = True         # behind those of the body: a position, a way, multipliers",
+         "WAY = True         # behind those of the body: "
+         + ("an angle, a way, a multiplier" if turns else "a position, a way, multipliers"),
          f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}",
-         f"MULTIPLIERS = {2 if planar else 3}",
-         "VECTOR = True        # the equations are components of one vector", "READS = 0",
-         *memory(f"tangent_{axis}" for axis in "xyz"[:2 if planar else 3]),
+         f"MULTIPLIERS = {size}",
+         f"VECTOR = {not turns}        # the equations are components of one vector", "READS = 0",
+         *memory(() if turns else [f"tangent_{axis}" for axis in "xyz"[:size]]),
          "WIDTH = None            # any number",
          "INERTIAL = False        # has kinetic energy",
          "POWER = False        # does work on the system: a load, damper or drive",

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from sebody.basics.errors import InputError
-from sebody.contract.names import path_kind, path_load_kind
+from sebody.contract.names import path_kind, path_load_kind, path_turn_kind
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Element, Path, Superelement
@@ -65,8 +65,10 @@ def put_on(model: Mechanism, old: Superelement, made: Superelement) -> None:
                 continue
             on = one.path._replace(path=changed[one.path.path])
             kept = one.attachments[one.carried[0]:]
-            kind = (path_kind(FRAMES[made.frame].kernel, model.planar)
-                    if on.here.carrier is made else one.kind)
+            frame = FRAMES[made.frame].kernel
+            kind = one.kind
+            if on.here.carrier is made:
+                kind = path_turn_kind(frame) if on.turns else path_kind(frame, model.planar)
             known[one] = replace(one, kind=kind, attachments=on.here.attachments + kept, path=on,
                                  shares=known.get(one.shares) if one.shares else None)
         joint.constraints = tuple(known.get(one, one) for one in joint.constraints)

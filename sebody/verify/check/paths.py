@@ -1,4 +1,6 @@
-"""Criteria of points on paths of bodies: those of joints, where the path is, and the balance.
+"""Criteria of points on paths of bodies, and of nodes that turn with them.
+
+Those of joints, where the path is or its angle, and the balance.
 
 The path is placed a second time by splines and rotations of SciPy, from the definition of the
 body's frame. In the first state the body has all of the path, in the second a part of it.
@@ -42,18 +44,18 @@ KINDS = 3       # of nodes, of those that general kernels are checked with
 
 
 def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
-    """A generic state of a body and, behind it, of a point, the way, and multipliers."""
+    """A generic state of a body and, behind it, of a point or angle, the way, and multipliers."""
     body, values, random = placed_case(module, seed, nodes=nodes)
-    d, n = body.dimension, body.n
+    d, n = module.MULTIPLIERS, body.n
     path, behind = _numbers(random, n, d, seed), 2 * d + 1
     q, v, a = (np.r_[own, random.normal(size=behind)] for own in (body.q, body.v, body.a))
     q[n + d] = WAY
     index = np.r_[index_row(len(q), nodes.positions, nodes.rotations), 0]
-    index[AT_FRAME], kept = len(body.frames), np.zeros(d)
+    index[AT_FRAME], kept = len(body.frames), np.zeros(len(module.MEMORY))
     case = Case(module, len(q), index, np.zeros(0), q, body.R, v, a,
                 np.r_[body.reference, kept], np.r_[body.frames, kept], path=len(path))
-    return with_constants(case, {part.name: values.get(part.name, path)
-                                 for part in module.CONSTANTS})
+    values |= {"path": path, "held": np.array(0.3)}
+    return with_constants(case, {part.name: values[part.name] for part in module.CONSTANTS})
 
 
 def _numbers(random: np.random.Generator, n: int, d: int, seed: int) -> NDArray:
@@ -81,8 +83,14 @@ def _place(case: Case, way: float | None = None) -> NDArray:
 
     By splines and rotations of SciPy.
     """
-    body, constants, d, n = _body(case), constants_of(case), case.dimension, case.own
-    path = constants["path"]
+    body, d = _body(case), case.dimension
+    origin = constants_of(case)["alphas"] @ body.q[:body.first_rotation].reshape(-1, d)
+    return origin + frame_rotation(body).as_matrix()[:d, :d] @ _row(case, d, way)
+
+
+def _row(case: Case, d: int, way: float | None = None) -> NDArray:
+    """What the path has at a way in the frame of the body, so many numbers."""
+    body, path, n = _body(case), constants_of(case)["path"], case.own
     rows = path[HEAD + len(KNOTS):][:2 * len(KNOTS) * d * (1 + n + FOLLOWERS)].reshape(
         len(KNOTS), 2, 1 + n + FOLLOWERS, d)
     way = case.q[n + d] if way is None else way
@@ -90,8 +98,23 @@ def _place(case: Case, way: float | None = None) -> NDArray:
     y = local_coordinates(body)
     Q = path[HEAD + len(KNOTS) + rows.size:][:FOLLOWERS * n * n].reshape(FOLLOWERS, n, n)
     z = np.r_[1.0, y, np.einsum("i,bij,j->b", y, Q, y) / 2]
-    origin = constants["alphas"] @ body.q[:body.first_rotation].reshape(-1, d)
-    return origin + frame_rotation(body).as_matrix()[:d, :d] @ (z @ here)
+    found: NDArray = z @ here
+    return found
+
+
+def _between(case: Case) -> float:
+    """Angle from a node to the tangent of the path that it turns with."""
+    tangent = frame_rotation(_body(case)).as_rotvec()[2] + float(_row(case, 1)[0])
+    return tangent - case.q[case.own] - float(constants_of(case)["held"])
+
+
+def angle(case: Case) -> float:
+    """The equation against the definition; its weight is that of the moment on the node."""
+    forces, between = evaluate(case, RESIDUAL)[0], _between(case)
+    weight = -forces[case.own] / (case.q[-1] * np.cos(between))
+    if np.ptp(case.constants[-case.path:][3:5]) > 0:
+        assert 0.01 < weight < 0.99
+    return difference(forces[-1:], weight * np.array([np.sin(between)]))
 
 
 def place(case: Case) -> float:
@@ -107,14 +130,20 @@ def place(case: Case) -> float:
 def balance(case: Case) -> float:
     """Forces on body and point add up to zero, and so do their moments, where the gap is closed."""
     d, n = case.dimension, case.own
-    case = case._replace(q=np.r_[case.q[:n], _place(case), case.q[n + d:]])
+    points, angles = [*range(0, case.first_rotation, d)], [*range(case.first_rotation,
+                                                                  case.first_mode)]
+    if "held" in constants_of(case):
+        angles.append(n)
+    else:
+        points.append(n)
+        case = case._replace(q=np.r_[case.q[:n], _place(case), case.q[n + d:]])
     forces = evaluate(case, RESIDUAL)[0]
     total, moment = np.zeros(3), np.zeros(3)
-    for at in (*range(0, case.first_rotation, d), n):
+    for at in points:
         x, f = (np.r_[values[at:at + d], np.zeros(3 - d)] for values in (case.q, forces))
         total, moment = total + f, moment + np.cross(x, f)
     if case.planar:
-        moment[2] += forces[case.first_rotation:case.first_mode].sum()
+        moment[2] += forces[angles].sum()
     for j, at in enumerate(case.rotations):
         moment += Rotation.from_matrix(case.R[9 * j:9 * j + 9].reshape(3, 3)).apply(
             forces[at:at + 3])
@@ -123,15 +152,17 @@ def balance(case: Case) -> float:
 
 CRITERIA = {"tangent": element_tangent, "force = gradient of lambda.phi": joint_force,
             "velocity": joint_velocity, "acceleration": joint_acceleration,
-            "place on the path": place, "forces in balance": balance}
+            "forces in balance": balance}
 
 
 def check_body_path(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria, with some numbers of nodes and modes."""
+    turns = any(part.name == "held" for part in module.CONSTANTS)
+    own = {"angle of the path": angle} if turns else {"place on the path": place}
     return [CheckRow(name, criterion, seed, measure(body_path_case(module, seed, nodes)), None,
                      LIMIT, nodes)
             for nodes in nodes_of(module)[:KINDS] for seed in range(STATES)
-            for criterion, measure in CRITERIA.items()]
+            for criterion, measure in (CRITERIA | own).items()]
 
 
 AXLES = np.array([[0.0, 1.0], [1.3, 0.7], [30.0, 5.0]])     # the last one is not on the path

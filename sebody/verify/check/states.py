@@ -113,10 +113,10 @@ class Case(NamedTuple):
     @property
     def own(self) -> int:
         """Unknowns of the body; behind them are those of a node that carries a surface, or a point
-        on a path with its way and multipliers.
+        on a path, or an angle, with its way and multipliers.
         """
         if hasattr(self.module, "WAY"):
-            return self.n - 2 * self.dimension - 1
+            return self.n - 2 * self.module.MULTIPLIERS - 1
         return self.n - (self.dimension + (1 if self.planar else 3)) * self.carriers
 
     @property
