@@ -1,9 +1,12 @@
-"""Whole numbers as text: the same in all targets but for some words."""
+"""Whole numbers and operands as text: the same in all targets but for some words."""
 
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sebody.derive.form.arrays import Entry
+import sympy as sp
+
+from sebody.derive.form.arrays import Array, Entry, View
+from sebody.derive.form.statements import Operand
 from sebody.derive.form.whole import (
     Agreed,
     Applied,
@@ -25,7 +28,8 @@ class Words(NamedTuple):
     quotient: str               # of two numbers, as a format
     largest: str                # likewise
     truncated: str              # of an entry
-    entry: Callable[[Entry], str]
+    behind: str                 # a place in an array
+    real: Callable[[sp.Expr | Entry], str]
 
 
 def whole_text(number: Whole, words: Words) -> str:
@@ -54,5 +58,17 @@ def whole_text(number: Whole, words: Words) -> str:
         case Stored(array, place):
             return f"{array.name}[{text(place)}]"
         case Truncated(entry):
-            return words.truncated.format(words.entry(entry))
+            return words.truncated.format(words.real(entry))
     raise TypeError(f"{number!r} is no whole number")
+
+
+def operand_text(operand: Operand, words: Words) -> str:
+    """An operand of a call in the words of a target."""
+    match operand:
+        case Array(name):
+            return name
+        case View(array, first):
+            return words.behind.format(array.name, whole_text(first, words))
+        case Whole():
+            return whole_text(operand, words)
+    return words.real(operand)

@@ -300,21 +300,6 @@ def _add_rows(system, state, bars, rows, out):
 
 
 @compiled
-def _follow_motions(system, state, reading, bars, motions, out):
-    """Add what outputs depend on by motions of bodies, as `_follow_energies`."""
-    status = set_motion_rows(system, state, reading, motions)
-    w = np.zeros(out.shape[2])
-    found = np.zeros((3, 1, out.shape[2]))
-    for c in range(out.shape[1]):
-        found[:] = 0.0
-        add_motion_rows(reading, motions, bars[c], found, 0)
-        if system.links.dependent.shape[0] > 0:
-            pull_back_bars(system, state, w, found[:, 0])
-        out[:, c] += found[:, 0]
-    return status
-
-
-@compiled
 def _weigh(system, state, reading, places, products, bars, w, whole):
     """Set the weights of the forces of elements: those of sums, and their own."""
     vectors = products.vectors

@@ -3,10 +3,9 @@
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
 
-from sebody.derive.form.arrays import Array, View
 from sebody.derive.form.statements import Operand
 from sebody.derive.form.whole import Whole
-from sebody.derive.printing.places import Words, whole_text
+from sebody.derive.printing.places import Words, operand_text, whole_text
 from sebody.derive.printing.powers import Powers
 
 
@@ -33,7 +32,7 @@ def code(expression: sp.Expr) -> str:
     return _PRINTER.doprint(expression) if expression != 0 else "0.0"
 
 
-WORDS = Words("{}/{}", "({0} > {1} ? {0} : {1})", "(int64_t){}", code)
+WORDS = Words("{}/{}", "({0} > {1} ? {0} : {1})", "(int64_t){}", "{} + {}", code)
 
 
 def whole_code(number: Whole) -> str:
@@ -43,11 +42,4 @@ def whole_code(number: Whole) -> str:
 
 def operand_code(operand: Operand) -> str:
     """An operand of a call as C."""
-    match operand:
-        case Array(name):
-            return name
-        case View(array, first):
-            return f"{array.name} + {whole_code(first)}"
-        case Whole():
-            return whole_code(operand)
-    return code(operand)
+    return operand_text(operand, WORDS)

@@ -3,11 +3,10 @@
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from sebody.derive.form.arrays import Array, View
 from sebody.derive.form.statements import Operand
 from sebody.derive.form.whole import Whole
 from sebody.derive.formulas.elements import choose
-from sebody.derive.printing.places import Words, whole_text
+from sebody.derive.printing.places import Words, operand_text, whole_text
 from sebody.derive.printing.powers import Powers
 
 
@@ -37,7 +36,7 @@ def code(expression: sp.Expr) -> str:
     return text[1:-1] if isinstance(expression, choose) else text
 
 
-WORDS = Words("{}//{}", "max({}, {})", "int({})", code)
+WORDS = Words("{}//{}", "max({}, {})", "int({})", "at({}, {})", code)
 
 
 def whole_code(number: Whole) -> str:
@@ -47,11 +46,4 @@ def whole_code(number: Whole) -> str:
 
 def operand_code(operand: Operand) -> str:
     """An operand of a call as Python."""
-    match operand:
-        case Array(name):
-            return name
-        case View(array, first):
-            return f"at({array.name}, {whole_code(first)})"
-        case Whole():
-            return whole_code(operand)
-    return code(operand)
+    return operand_text(operand, WORDS)
