@@ -110,3 +110,10 @@ def test_every_command_is_light():
     code = "import importlib\n" + "\n".join(
         f"importlib.import_module({one.__name__!r})" for one in COMMANDS)
     assert upper(loaded(code)) <= COMMAND_LINE
+
+
+def test_scenes_do_not_warn_of_a_sign_that_they_know():
+    code = "import sebody.scenes.machine_bed as scene\nscene.build()"
+    done = subprocess.run([sys.executable, "-W", "default", "-c", code], capture_output=True,
+                          text=True, check=True)
+    assert "FutureWarning" not in done.stderr
