@@ -8,6 +8,7 @@ import warnings
 from sebody.basics.errors import LimitWarning
 
 PACKAGE = __name__.partition(".")[0]
+SCENES = f"{PACKAGE}.scenes."     # written as users write theirs
 
 
 def warn(message: Warning | str, category: type[Warning] = LimitWarning) -> None:
@@ -23,4 +24,4 @@ def warn(message: Warning | str, category: type[Warning] = LimitWarning) -> None
 
 
 def _own(module: str) -> bool:
-    return module.partition(".")[0] == PACKAGE
+    return module.partition(".")[0] == PACKAGE and not module.startswith(SCENES)
