@@ -28,7 +28,7 @@ from sebody.assembly.equal_bodies import (
     turn_row,
 )
 from sebody.assembly.memory_map import frame_numbers
-from sebody.contract.counts import CACHE_LINE, axes_of, superelement_counts
+from sebody.contract.counts import CACHE_LINE, Counts, axes_of, superelement_counts
 from sebody.contract.equal_row import NOT_TURNED
 from sebody.contract.layout import AT_POSITIONS, AT_ROTATIONS
 from sebody.engine.offsets import at_cache_lines
@@ -36,7 +36,7 @@ from sebody.kernels.loader import element_kernel, load
 from sebody.model.body_points import point_constants
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, coordinates
-from sebody.model.parts import Element, Node, Superelement
+from sebody.model.parts import Element, Node, PathPiece, Superelement
 from sebody.model.path_tables import path_numbers
 from sebody.reduction.body import ReducedBody
 
@@ -243,21 +243,25 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
 def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
     """The row of constants on a path: what places the frame, forces that move, and the path."""
     assert element.path is not None
-    carrier, own = element.path.here.carrier, dict(element.constants)
+    own = dict(element.constants)
     path = path_numbers(element.path.path, element.path.piece, "axles" in own, element.path.turns)
     if "axles" in own:
         axles = np.asarray(own.pop("axles"))
         path = np.concatenate([path, [len(axles)], axles.ravel()])
-    if isinstance(carrier, Node):
-        planar = len(carrier.point) == 2
-        width = element.path.here.carrier_width
-        counts = axes_of(planar) | superelement_counts(1, 1, planar, width)
-        values: dict[str, ArrayLike] = {"alphas": [1.0], "fits": [1.0], "alpha_rs": [1.0],
-                                        "X": np.zeros((1, len(carrier.point)))}
-    else:
-        counts, values = counts_of(carrier), frame_constants(carrier)
+    counts, values = carrier_constants(element.path.here)
     return constants_row(element.name, kernel, {**counts, "path": len(path)},
                          values | own | {"path": path})
+
+
+def carrier_constants(piece: PathPiece) -> tuple[Counts, dict[str, ArrayLike]]:
+    """Counts and constants of what a piece of a path is on: before those of the path."""
+    carrier = piece.carrier
+    if not isinstance(carrier, Node):
+        return counts_of(carrier), frame_constants(carrier)
+    planar = len(carrier.point) == 2
+    counts = {**axes_of(planar), **superelement_counts(1, 1, planar, piece.carrier_width)}
+    return counts, {"alphas": [1.0], "fits": [1.0], "alpha_rs": [1.0],
+                    "X": np.zeros((1, len(carrier.point)))}
 
 
 def _matrices(numbering: Numbering, element: Element) -> list[int]:

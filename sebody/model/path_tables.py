@@ -34,17 +34,22 @@ def path_numbers(path: Path, k: int, forces: bool = False, angles: bool = False)
     """
     piece = path.pieces[k]
     rows = angles_of(piece) if angles else rows_of(piece)
-    half, length = path.blend / 2, piece.ways[-1]
-    first = (-half, half) if k else (-NO_EDGE, -NO_EDGE)
-    last = ((length - half, length + half) if k < len(path.pieces) - 1 else
-            (NO_EDGE, NO_EDGE))
     margin = 0.0 if forces else MARGIN * path.length
     held = ("refuse", "straight", "stop") if forces else ("refuse",)
     low = -margin if path.ends[0] in held else -NO_EDGE
     high = path.length + margin if path.ends[1] in held else NO_EDGE
     both = np.stack([rows.values, rows.slopes], axis=1)
-    return np.concatenate([[len(piece.ways), len(rows.followers), piece.offset], first, last,
-                           [low, high], piece.ways, both.ravel(), rows.followers.ravel()])
+    return np.concatenate([[len(piece.ways), len(rows.followers), piece.offset],
+                           edges(path, k, path.blend), [low, high], piece.ways, both.ravel(),
+                           rows.followers.ravel()])
+
+
+def edges(path: Path, k: int, blend: float) -> list[float]:
+    """Ways along piece k between which its weight rises and falls."""
+    half, length = blend / 2, float(path.pieces[k].ways[-1])
+    first = (-half, half) if k else (-NO_EDGE, -NO_EDGE)
+    last = (length - half, length + half) if k < len(path.pieces) - 1 else (NO_EDGE, NO_EDGE)
+    return [*first, *last]
 
 
 def rows_of(piece: PathPiece) -> Rows:

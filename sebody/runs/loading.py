@@ -7,6 +7,8 @@ it: an unstable state is moved to either side along its softest motion and settl
 no state, it settles from the last one (it snaps). Only a stable state counts.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_matrix
@@ -14,6 +16,7 @@ from scipy.sparse import csc_matrix
 from sebody.basics.errors import InputError, SimulationError
 from sebody.contract.layout import FIELD, RECORD_T
 from sebody.runs import user_faults
+from sebody.runs.held_ways import Ways
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import (
@@ -30,7 +33,7 @@ from sebody.runs.settling import (
     size,
     solution,
 )
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Standstill
 from sebody.runs.stability import Stiffness
 from sebody.runs.sticking import RUN, in_turns, remedy
 from sebody.runs.tensions import Tensions
@@ -47,7 +50,7 @@ class Loading:
 
     Parameters
     ----------
-    run : Simulation
+    run : Standstill
         At rest, with all of its loads.
     steady : Spin
         With the whole load.
@@ -64,7 +67,7 @@ class Loading:
         Where the path became unstable or ended.
     """
 
-    def __init__(self, run: Simulation, steady: Spin, steps: int, tolerance: float, keep: bool):
+    def __init__(self, run: Standstill, steady: Spin, steps: int, tolerance: float, keep: bool):
         self.run, self.steady, self.steps, self.tolerance = run, steady, steps, tolerance
         self.keep = keep
         self.loads, self.field = run.state.loads.copy(), run.state.coefficients[FIELD:].copy()
@@ -81,6 +84,7 @@ class Loading:
         self._unit = pace(run, still) if self.judged else 0.0
         if not np.isfinite(self._unit):
             self._unit = 0.0
+        self.ways = Ways(run, steady)
         self.load(0.0)
         self._stiff = self.judged and Stiffness(run, linear(run, still, None)[0],
                                                 self._unit).stiff()
@@ -102,6 +106,8 @@ class Loading:
             if self._reach(target) and np.isfinite(self.run.state.residual).all():
                 self.share = target
                 self.run.state.now[RECORD_T] = target
+                if target >= 1.0 - 1e-12 and len(self.ways):
+                    self._let_go()
                 self.run.rows.stretches.append(self.run.state.now[None].copy())
                 continue
             self._back()
@@ -109,6 +115,52 @@ class Loading:
             if self.step < SMALLEST:
                 raise SimulationError(f"no equilibrium was found above {self.share:.4g} of the "
                                       f"load: {self._reason(target)}", None)
+
+    def _let_go(self) -> None:
+        """Let go the ways that were held while the loads were applied.
+
+        Raises
+        ------
+        SimulationError
+            They come to rest nowhere.
+        """
+        run, spin = self.run, self.steady
+        self._start = run.state.now.copy()
+        self.ways.let_go(spin)
+        with self.ways.rounded():
+            found = balance(run, self.tolerance, spin)
+            near = size(run, moved_by(run, self._start)) < NEAR
+            stable = found is not None and near and self._accepts(found.tangent)
+        if found is None or not near:
+            self._back()
+            rests = self._rolls(spin, 1.0)
+        else:
+            if not stable:      # on top of a support
+                self._leave(spin, 1.0, found.tangent, self._rolls)
+            rests = self._placed(spin)
+        if not rests:
+            why = self.ways.reason()
+            self._back()
+            self.ways.hold()
+            run.rows.stretches.append(run.state.now[None].copy())
+            raise SimulationError(f"no equilibrium was found: {why}", None)
+        self.notes += self.ways.kinks
+
+    def _rolls(self, spin: Spin, target: float) -> bool:
+        """Tell whether points on paths move to where they rest."""
+        try:
+            with self.ways.rounded():
+                settles = settle(self.run, self.tolerance, spin, False, self._work)
+            return settles and self._placed(spin) and self._accepts(
+                linear(self.run, spin, None)[0])
+        except InputError:      # a point is beyond the end of its path
+            return False
+
+    def _placed(self, spin: Spin) -> bool:
+        return self.ways.place(spin, lambda: balance(self.run, self.tolerance, spin) is not None)
+
+    def _accepts(self, tangent: csc_matrix) -> bool:
+        return not self.judged or self._is_stable(1.0, tangent)
 
     def load(self, share: float) -> None:
         """Set the loads of the run to a share of them."""
@@ -136,7 +188,7 @@ class Loading:
         if self.step > FOLLOWED:
             return False
         return (self._snap(spin, target) if found is None else
-                self._leave(spin, target, found.tangent))
+                self._leave(spin, target, found.tangent, self._rests))
 
     def _follows(self, target: float, first: float) -> bool:
         """Tell if a stable state is where the path leads, or the path ends and it may be another.
@@ -190,7 +242,8 @@ class Loading:
         except InputError:      # cannot be evaluated: a point is beyond the end of its path
             return False
 
-    def _leave(self, spin: Spin, target: float, tangent: csc_matrix) -> bool:
+    def _leave(self, spin: Spin, target: float, tangent: csc_matrix,
+               rests: Callable[[Spin, float], bool]) -> bool:
         """Leave an unstable state to one of its sides; True, as it is kept where neither rests."""
         found = self.run.state.now.copy()
         self.step = 1.0 / self.steps
@@ -199,7 +252,7 @@ class Loading:
             for side in (1.0, -1.0):
                 self.run.state.now[:] = found
                 nudge(self.run, motion, side)
-                if self._rests(spin, target):
+                if rests(spin, target):
                     self.notes.append(f"left an unstable state at {target:.4g} of the load")
                     return True
             self.run.state.now[:] = found

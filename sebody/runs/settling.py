@@ -25,7 +25,7 @@ from sebody.engine.evaluate import to_body_axes, update_rotations
 from sebody.results import rotations
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Standstill
 from sebody.runs.stability import Stiffness
 from sebody.runs.state_derivatives import rotating
 
@@ -79,7 +79,7 @@ class Found(NamedTuple):
     first: float            # size of the first correction
 
 
-def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None = None,
+def balance(run: Standstill, tolerance: float, spin: Spin, springs: Springs | None = None,
             stiff: bool = False, work: Work | None = None) -> Found | None:
     """Newton's iteration with full corrections, then, from the same start, with shortened ones.
 
@@ -110,7 +110,7 @@ def balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | No
     return found
 
 
-def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | None, stiff: bool,
+def _balance(run: Standstill, tolerance: float, spin: Spin, springs: Springs | None, stiff: bool,
              work: Work, iterations: int, least: float) -> tuple[Found | None, bool]:
     """The equilibrium, if one is found, and whether this ended before all iterations.
 
@@ -144,7 +144,7 @@ def _balance(run: Simulation, tolerance: float, spin: Spin, springs: Springs | N
     return None, False
 
 
-def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work) -> bool:
+def settle(run: Standstill, tolerance: float, spin: Spin, near: bool, work: Work) -> bool:
     """Let the structure move to where it rests; False where it does not come to rest.
 
     Each step must end where the potential of loads and springs is least: at a largest one, or at a
@@ -169,8 +169,7 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
         found = balance(run, tolerance, spin, springs, work=work)
         moved = size(run, moved_by(run, kept))
         if found is None or moved > FAR or not (
-                spin.rotates or _is_least(run, linear(run, spin, springs)[0], unit,
-                                          ending or moved < NUDGE)):
+                spin.rotates or _is_least(run, spin, springs, unit, ending or moved < NUDGE)):
             run.state.now[:] = kept
             rate, faster = AGAIN * rate, max(np.sqrt(faster), SLOWEST)
             if rate > unit / STIFFEST or found is not None and max(moved, last) < tolerance:
@@ -189,7 +188,7 @@ def settle(run: Simulation, tolerance: float, spin: Spin, near: bool, work: Work
     return False
 
 
-def _is_rounding(run: Simulation, tangent: csc_matrix, springs: Springs) -> bool:
+def _is_rounding(run: Standstill, tangent: csc_matrix, springs: Springs) -> bool:
     """Tell if springs pull with no more than what the rounding of unknowns makes of forces.
 
     So they do on rods that spin freely, by as much as softer springs let these turn.
@@ -201,18 +200,21 @@ def _is_rounding(run: Simulation, tangent: csc_matrix, springs: Springs) -> bool
     return bool(np.all(np.abs(pull) <= PLACED * (abs(tangent) @ places)))
 
 
-def _is_least(run: Simulation, tangent: csc_matrix, unit: float, rests: bool) -> bool:
+def _is_least(run: Standstill, spin: Spin, springs: Springs, unit: float, rests: bool) -> bool:
     """Tell if a potential is least; stiffer springs cost less than certainty until it rests."""
-    stiffness = Stiffness(run, tangent, unit)
+    try:
+        stiffness = Stiffness(run, linear(run, spin, springs)[0], unit)
+    except InputError:          # no element can evaluate the last correction
+        return False
     return stiffness.stable() if rests else stiffness.surely_stable()
 
 
-def nudge(run: Simulation, motion: NDArray, side: float) -> None:
+def nudge(run: Standstill, motion: NDArray, side: float) -> None:
     """Move a state a little along a motion, (unknowns,), to one of its sides."""
     move(run, side * NUDGE / max(size(run, motion), 1e-300) * motion)
 
 
-def move(run: Simulation, change: NDArray) -> None:
+def move(run: Standstill, change: NDArray) -> None:
     """Add a change of the unknowns, in their axes."""
     state, full = run.state, np.zeros(run.numbering.total)
     full[:len(change)] = change
@@ -222,7 +224,7 @@ def move(run: Simulation, change: NDArray) -> None:
     update_rotations(run.system, state)
 
 
-def size(run: Simulation, change: NDArray) -> float:
+def size(run: Standstill, change: NDArray) -> float:
     """Size of a change of the unknowns, relative to magnitudes of positions and rotations.
 
     Modes and multipliers have no magnitude. Where nothing has one, as in a body that is held at all
@@ -236,17 +238,22 @@ def size(run: Simulation, change: NDArray) -> float:
     return 0.0 if largest == 0.0 else float(np.abs(change).max() / largest)
 
 
-def linear(run: Simulation, spin: Spin, springs: Springs | None) -> tuple[csc_matrix, NDArray]:
-    """Tangent and residual, with those of the springs."""
+def linear(run: Standstill, spin: Spin, springs: Springs | None) -> tuple[csc_matrix, NDArray]:
+    """Tangent and residual, with those of the springs; what is held does not move."""
     spin.move(run)
     tangent, residual = rotating(run, spin)
+    if len(run.held_unknowns):
+        moving = np.ones(len(residual))
+        moving[run.held_unknowns] = 0.0
+        tangent = csc_matrix(diags(moving) @ tangent @ diags(moving) + diags(1.0 - moving))
+        residual *= moving
     if springs is None:
         return tangent, residual
     pull = springs.stiffness * _displacement(run, springs.q, springs.R)
     return csc_matrix(tangent + diags(springs.stiffness)), residual + pull
 
 
-def solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
+def solution(run: Standstill, solver: Scaled, residual: NDArray) -> NDArray:
     """Correction; motions without stiffness and load, such as the angle of a spin, are kept.
 
     No numbers where a load acts on such a motion.
@@ -262,20 +269,20 @@ def solution(run: Simulation, solver: Scaled, residual: NDArray) -> NDArray:
     return np.full(n, np.nan) if np.any(left > np.maximum(forces, places)) else answer
 
 
-def _springs(run: Simulation, rate: float) -> Springs:
+def _springs(run: Standstill, rate: float) -> Springs:
     n = run.numbering.free
     moving = run.system.is_multiplier[:n] == 0.0
     return Springs(np.where(moving, rate * run.system.inertias[:n], 0.0), run.state.q.copy(),
                    run.state.R.copy())
 
 
-def moved_by(run: Simulation, before: NDArray) -> NDArray:
+def moved_by(run: Standstill, before: NDArray) -> NDArray:
     """Displacement of the unknowns since a state, (unknowns,)."""
     parts = run.state.recorded_parts
     return _displacement(run, before[parts["q"]], before[parts["R"]])
 
 
-def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
+def _displacement(run: Standstill, q: NDArray, R: NDArray) -> NDArray:
     """From a configuration to the present one, (unknowns,): rotation vectors, else differences.
 
     In the axes of the unknowns.
@@ -291,7 +298,7 @@ def _displacement(run: Simulation, q: NDArray, R: NDArray) -> NDArray:
     return change[:n]
 
 
-def pace(run: Simulation, spin: Spin) -> float:
+def pace(run: Standstill, spin: Spin) -> float:
     """Square of the rate at which the loads begin to move the structure [1/time^2]."""
     unit = _springs(run, 1.0).stiffness
     tangent, residual = linear(run, spin, None)

@@ -383,6 +383,13 @@ class Simulation:
 
 
 class Standstill(Simulation):
-    """The start of a model that no steps follow: its loads are as they were given at any time."""
+    """The start of a model that no steps follow: its loads are as they were given at any time.
+
+    Attributes
+    ----------
+    held_unknowns : (k,)
+        Unknowns that stay where they are in the search of an equilibrium.
+    """
 
     gives_loads_to_steps = False
+    held_unknowns: NDArray = np.zeros(0, dtype=np.int64)

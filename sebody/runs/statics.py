@@ -20,7 +20,7 @@ from sebody.runs.bearing_speeds import copied_for_reading, read_tables
 from sebody.runs.loading import CHOICES, Loading
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import pace
-from sebody.runs.simulation import Simulation, Standstill
+from sebody.runs.simulation import Standstill
 from sebody.runs.tuning import unbend
 from sebody.runs.turning_parts import parts_of
 
@@ -32,6 +32,9 @@ def equilibrium(model: Model, steps: int = 10, t: float = 0.0, tolerance: float 
                 spin: ArrayLike | None = None, unstable: str = "leave",
                 hub: Node | str | None = None) -> Result:
     """Equilibrium under gravity and the loads of a time, applied in equal steps.
+
+    Points that slide freely along paths are held where they start until all loads are applied, then
+    let go: the last state is where they come to rest.
 
     Parameters
     ----------
@@ -98,7 +101,7 @@ def steady_rotation(model: Model, steps: int, spin: Spin) -> Result:
     return _equilibrium(at_rest(model, 0.0), spin, steps, TOLERANCE, "leave")
 
 
-def _equilibrium(run: Simulation, spin: Spin, steps: int, tolerance: float, unstable: str
+def _equilibrium(run: Standstill, spin: Spin, steps: int, tolerance: float, unstable: str
                  ) -> Result:
     memory.check(8.0 * steps * run.state.now.size, f"steps is {steps}: the record of all",
                  "give fewer")
@@ -111,7 +114,7 @@ def _equilibrium(run: Simulation, spin: Spin, steps: int, tolerance: float, unst
     return _result(run, path)
 
 
-def at_rest(model: Model, t: float) -> Simulation:
+def at_rest(model: Model, t: float) -> Standstill:
     """The model as built, with all of the loads of a time and without rates."""
     run = _still(Standstill(model, 1.0), t)
     if not any(load.tuned for load in model.loads):
@@ -128,7 +131,7 @@ def at_rest(model: Model, t: float) -> Simulation:
                   t)
 
 
-def _still(run: Simulation, t: float) -> Simulation:
+def _still(run: Standstill, t: float) -> Standstill:
     """Without rates and bent bristles, with the loads of a time."""
     unbend(run.model, run.numbering, run.state)
     state = run.state
@@ -146,7 +149,7 @@ def _refuse_states(model: Model) -> None:
                              "give the controller a law without states")
 
 
-def _result(run: Simulation, path: Loading) -> Result:
+def _result(run: Standstill, path: Loading) -> Result:
     stability = path.verdict()
     if stability.startswith("unstable"):
         since = f" ({'; '.join(path.notes)})" * bool(path.notes)
@@ -160,7 +163,7 @@ def _result(run: Simulation, path: Loading) -> Result:
     return results
 
 
-def _forces(run: Simulation, rows: NDArray, path: Loading) -> Forces:
+def _forces(run: Standstill, rows: NDArray, path: Loading) -> Forces:
     """Forces under the share of the load of each row; the time in a row is that share."""
     state, forces = run.state, []
     kept = [array.copy() for array in (state.now, state.loads, state.coefficients)]

@@ -7,13 +7,13 @@ from sebody.results.contact_states import states
 from sebody.runs.kkt_solver import Scaled
 from sebody.runs.rotating_frame import Spin
 from sebody.runs.settling import linear, move, solution
-from sebody.runs.simulation import Simulation
+from sebody.runs.simulation import Standstill
 
 CORRECTIONS = 20            # of Newton's iteration that are looked at; the first half may settle
 RUN = "run the model with damping until it rests"
 
 
-def in_turns(run: Simulation, spin: Spin) -> str:
+def in_turns(run: Standstill, spin: Spin) -> str:
     """Changes between sticking and sliding in Newton's iteration, or nothing, in words.
 
     From the state of the run, which is put back.
@@ -41,7 +41,7 @@ def in_turns(run: Simulation, spin: Spin) -> str:
     return f"{said}: where such a model rests depends on its motion before: {RUN}"
 
 
-def remedy(run: Simulation) -> str:
+def remedy(run: Standstill) -> str:
     """A remedy where friction or contacts hold a structure, or nothing."""
     now = states(run.model, run.numbering, run.state.frames)
     open_ones = [name for name, one in now.items() if one == "open"]
