@@ -315,8 +315,10 @@ class Simulation:
             return False
         self.sampling.stop_at(t_end)
         helped = helping(self.system, state) if worth_help(self.system, count) else nullcontext()
+        began = time.perf_counter()
         with helped:
             code = advance(self.system, state, buffer, self.scheme, last, FEW + 1, self.dense)
+        self.seconds += time.perf_counter() - began
         self.aid.check()
         return code == DONE
 

@@ -6,6 +6,7 @@ from advised_crane import T_END, H, crane
 
 from sebody import InputError, Model, simulate
 from sebody.analysis import advise
+from sebody.control import pid
 
 
 def error(found: Model, step: float, quantity: str) -> float:
@@ -66,3 +67,17 @@ def test_what_cannot_be_advised_is_said(given, message):
     whole = {"model": crane(), "h": H, "t_end": T_END, "quantities": "tip.position"} | given
     with pytest.raises(InputError, match=message):
         advise(**whole)
+
+
+@pytest.mark.parametrize("period", [None, 0.01])
+def test_models_with_actuators_and_sampled_controllers_are_advised(period):
+    model = crane(torque=0.0)
+    model.actuator("motor", joint=model.joints[0], start=300.0)
+    if period:
+        model.sensor("angle", "base.rotation")
+        model.controller("loop", pid(3000.0, 0.0, 10.0, reference=0.1), inputs=("angle",),
+                         outputs=("motor",), period=period)
+    advice = advise(model, H, T_END, "tip.position", 0.05)
+    assert advice.error <= 0.05 and advice.seconds > 0.0
+    if period:
+        assert round(period / advice.step, 9) == round(period / advice.step)

@@ -23,6 +23,7 @@ from sebody.explore.advice.quantities import sizes_of
 from sebody.explore.advice.reference import ORDER_FACTOR, Reference, reference, still
 from sebody.explore.advice.runner import FINER, Laboratory, Tried
 from sebody.explore.advice.runs import Run
+from sebody.model.model import Model
 
 GOOD = 0.2              # of the tolerance, that the reference may be off by without shorter steps
 LARGEST = 0.9           # relative tolerance, that an absolute one is at most
@@ -149,7 +150,7 @@ def _try_longer(lab: Laboratory) -> None:
             return
         try:
             lab.run_detailed(k * h)
-        except SimulationError:
+        except (InputError, SimulationError):       # such as a step that divides no period
             return
 
 
@@ -159,7 +160,8 @@ def _guard(lab: Laboratory) -> None:
     lab.warnings = lab.bases[fine].result.warnings
     if not lab.quantities.histories:
         return
-    step, whole = Step(OFF_GRID * fine), lab.builder.build(lab.detailed)
+    whole = lab.builder.build(lab.detailed)
+    step = Step(_off_grid(fine, whole))
     known = lab.bases[fine].values.frequencies
     run = lab.beside(whole, step, "off the grid of all others", 1, known)
     off, doubt = off_the_grid(run.result, run.values, step.h, lab.reference, lab.runs.h)
@@ -172,6 +174,13 @@ def _guard(lab: Laboratory) -> None:
     growth = amplified(other.result, still, scales)
     lab.doubts += [doubt, growth.doubt]
     lab.remarks += growth.remark
+
+
+def _off_grid(fine: float, model: Model) -> float:
+    """A step that is slightly shorter than another one; it divides the periods of samples, too."""
+    periods = [one.period for one in (*model.sensors.values(), *model.controllers.values())
+               if one.period]
+    return max(periods) / (round(max(periods) / fine) + 1) if periods else OFF_GRID * fine
 
 
 def _reference(lab: Laboratory) -> Reference:
