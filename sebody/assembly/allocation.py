@@ -44,6 +44,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, d
     zeros = np.zeros
     amplitudes = 3 * ports + sum(len(one.series.names) for one in numbering.series)
     acting = int(system.at_g[-1] - system.at_g[system.first_power[0]]) + len(system.prescribed)
+    acting += len(system.gravity_ports)
     clock, control = _counters(h)
     state = State.of(
         counts,

@@ -63,8 +63,7 @@ def build(model: Mechanism, threads: int = 1, grid: Grid | None = None
     own = indices(_structure(model, numbering, batches, ends))
     time_functions, jumps = given_to_steps(numbering, grid)
     series = series_given_to_steps(numbering, grid)
-    ports = port_arrays(time_functions, numbering.prescribed, jumps, numbering.memory.inputs,
-                        series.values())
+    ports = port_arrays(time_functions, numbering, jumps, series.values())
     slots = own.system["slot_unknowns"].size
     owners = [owner for batch in batches.all for owner in batch.owners]
     first_force = starts(b.width for b in batches.all for _ in b.rows).tolist()

@@ -1,6 +1,7 @@
 """Bodies whose coupling with motions of their base is unknown: what they cannot be asked for."""
 
 from sebody.basics.errors import InputError
+from sebody.model.gravity_fields import has_gravity
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import DofBlock
 
@@ -24,7 +25,7 @@ def check_grounded(model: Mechanism) -> None:
         if not all(_still(block) for block in (base.position, base.rotation)):
             raise InputError(f"{what}, so node {base.name!r}, its base, must be fixed: use "
                              f"model.foundation, or {_REMEDY}")
-        if model.gravity_field.any():
+        if has_gravity(model):
             raise InputError(f"{what}, so its weight is unknown: {_REMEDY}, or leave gravity out "
                              "and give weights as loads")
 

@@ -89,6 +89,7 @@ def number(model: Mechanism) -> Numbering:
     return Numbering(free, len(order.names), order.at, rotations, modes, order.multipliers,
                      order.names, dependent, ports.of, ports.names, ports.time_functions,
                      ports.prescribed, np.array(groups), jumps=ports.jumps, forced=ports.forced,
+                     gravity=ports.gravity,
                      series=series_of(model, len(ports.names)),
                      memory_map=memory_map(model, ports.of, laws),
                      reads=_reads(model, order.multipliers))

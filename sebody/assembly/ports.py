@@ -12,6 +12,7 @@ from sebody.engine.load_amplitudes import AMPLITUDE, PIECE, POLYNOMIAL, SERIES
 from sebody.kernels.loader import element_kernel
 from sebody.model.histories import Pieces
 from sebody.model.mechanism import Mechanism
+from sebody.model.numbering import Numbering
 from sebody.model.parts import DofBlock, Element, Superelement
 from sebody.model.time_functions import TimeFunction, same_waves
 
@@ -25,11 +26,12 @@ class Ports(NamedTuple):
     prescribed: list[tuple[int, int, int, float]]   # coordinate, port, 1 for a rotation, factor
     jumps: list[list[float]]        # times at which accelerations jump with the port
     forced: list[bool]              # ports of loads, which are no motions
+    gravity: list[tuple[int, NDArray]]      # ports of gravity that changes with time, their fields
 
 
 def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
     """Power ports of a model; `at` is the first coordinate of each DOF block, by id."""
-    ports = Ports({}, [], [], [], [], [])
+    ports = Ports({}, [], [], [], [], [], [])
 
     def add(name: str, time_function: TimeFunction | None, jumps: list[float],
             forced: bool = False) -> int:
@@ -52,6 +54,9 @@ def number_ports(model: Mechanism, at: Mapping[DofBlock, int]) -> Ports:
             port = add(motion.name, motion.time_function, motion.time_function.abrupt(2))
             ports.prescribed.extend((at[dof_block] + k, port, rotational, d)
                                     for k, d in enumerate(motion.direction) if d != 0.0)
+    for one in model.gravity_courses:
+        port = add(one.name, one.time_function, one.time_function.abrupt(0), True)
+        ports.gravity.append((port, one.direction))
     return ports
 
 
@@ -94,14 +99,16 @@ def _jumps(element: Element) -> list[float]:
     return element.time_function.abrupt(2 if element.multipliers else 0)
 
 
-def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, int, int, float]],
-                jumps: list[list[float]], inputs: dict[int, int], series: Iterable[Pieces]
-                ) -> dict[str, NDArray]:
+def port_arrays(time_functions: list[TimeFunction], numbering: Numbering, jumps: list[list[float]],
+                series: Iterable[Pieces]) -> dict[str, NDArray]:
     """The members of `System` for time functions of ports and for prescribed coordinates.
 
-    `inputs` are the places in `State.frames` of ports that are inputs, `series` those of
-    loads.
+    `time_functions`, `jumps` and `series` are as steps are given them.
     """
+    prescribed, inputs = numbering.prescribed, numbering.memory.inputs
+    fields = np.zeros((len(numbering.gravity), 3))
+    for row, (_, field) in zip(fields, numbering.gravity, strict=True):
+        row[:field.size] = field
     series = list(series)
     jumping = {t for times in (*jumps, *(one.jumps.tolist() for one in series)) for t in times}
     corners = sorted(jumping.union(*(_corners(h) for h in time_functions),
@@ -116,7 +123,9 @@ def port_arrays(time_functions: list[TimeFunction], prescribed: list[tuple[int, 
                 (INPUT, inputs[port], 0) if port in inputs else h.addresses
                 for port, h in enumerate(time_functions)], dtype=np.int64).reshape(-1, 3),
             "prescribed": np.array([row[:3] for row in prescribed], dtype=np.int64).reshape(-1, 3),
-            "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float)}
+            "prescribed_factor": np.array([row[3] for row in prescribed], dtype=float),
+            "gravity_ports": np.array([port for port, _ in numbering.gravity], dtype=np.int64),
+            "gravity_fields": fields}
 
 
 def _corners(one: TimeFunction) -> list[float]:

@@ -4,7 +4,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import C_DAMPING, CLOCK, INPUT, OK, RESIDUAL, VELOCITY
+from sebody.contract.layout import C_DAMPING, CLOCK, FIELD, INPUT, OK, RESIDUAL, VELOCITY
 from sebody.engine.actuator_inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.load_amplitudes import set_series, time_function_at
@@ -22,7 +22,27 @@ def _call_function(typingctx, address, t):
 
 @compiled(forceinline=True)
 def run_kernels(task, first, last, system, state):
-    """Evaluate batches; returns the status of the first element that fails."""
+    """Evaluate batches under the loads set; returns the status of the first element that fails."""
+    set_gravity(system, state)
+    return run_batches(task, first, last, system, state)
+
+
+@compiled(forceinline=True)
+def set_gravity(system, state):
+    """Set gravity that changes with time from the amplitudes of its ports."""
+    fields, c = system.gravity_fields, state.coefficients
+    for k in range(system.gravity_ports.size):
+        amplitude = state.loads[3 * system.gravity_ports[k]]
+        for i in range(system.dimension[0]):
+            if k == 0:
+                c[FIELD + i] = amplitude * fields[k, i]
+            else:
+                c[FIELD + i] += amplitude * fields[k, i]
+
+
+@compiled(forceinline=True)
+def run_batches(task, first, last, system, state):
+    """The same under gravity as it is."""
     for b in range(first, last):
         for begin in range(0, system.count[b], SHARE):
             status = run_part(task, b, begin, min(SHARE, system.count[b] - begin), system, state,

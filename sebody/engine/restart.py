@@ -53,7 +53,7 @@ from sebody.engine.state import (
     SOLUTION,
 )
 from sebody.engine.vectors import copy
-from sebody.engine.work import set_acting
+from sebody.engine.work import jump_gravity, set_acting
 
 MOST_CORRECTIONS = 30   # of a restart
 MOST_MATRICES = 6       # likewise
@@ -138,7 +138,9 @@ def _begin(system, state, lead):
 def set_masses(system, state):
     """Set the loads after the jump and the coefficients of masses and constraints."""
     clock, c = state.clock, state.coefficients
+    copy(state.loads, state.loads_old)
     set_loads_beside(system, state.frames, state.loads, clock.time, -clock.beside)
+    jump_gravity(system, state)
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] = 0.0
     for k in range(system.prescribed.shape[0]):

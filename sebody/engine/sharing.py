@@ -9,7 +9,13 @@ which the thread of the loop does on its own.
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OK, RESIDUAL, TANGENT
 from sebody.engine import elimination
-from sebody.engine.evaluate import SHARE, limit_of_moved, run_moved_share, run_part
+from sebody.engine.evaluate import (
+    SHARE,
+    limit_of_moved,
+    run_moved_share,
+    run_part,
+    set_gravity,
+)
 from sebody.engine.mailbox import (
     CALL,
     TASK,
@@ -70,6 +76,7 @@ def _do_together(system, state, task):
     mail = pointer_to(system.shared.mail)
     count = system.part_blocks.size - 1
     if task <= SHARE_MOVED:
+        set_gravity(system, state)
         count = 0
         for b in range(system.first_joint[0] if task == RENEWED else system.address.size):
             count += (system.count[b] + SHARE - 1) // SHARE

@@ -94,7 +94,7 @@ class State(Arrays):
     loads                 (3 p,) amplitude of every port and its first two rates
     loads_old             (3 p,) the same
     acting                forces of the ports, as residuals: of elements in the order of `g`, then
-                          on prescribed coordinates
+                          on prescribed coordinates; then what amplitudes of gravity multiply
     acting_old            the same
     works_old             (p,) work of every port
     powers, powers_old    (p,) power of every port at both ends of the last step, for output within

@@ -92,6 +92,8 @@ class System(Arrays):
     series_values       coefficients of their pieces
     prescribed          (k, 3) coordinate, port, 1 for rotations
     prescribed_factor   (k,) motion of the coordinate by that of the port
+    gravity_ports       (k,) ports of gravity that changes with time
+    gravity_fields      (k, 3) fields that their amplitudes multiply
     ------------------  ----------------------------------------------------------------------------
     others
     ------------------------------------------------------------------------------------------------
@@ -164,6 +166,8 @@ class System(Arrays):
     series_values: NDArray
     prescribed: NDArray
     prescribed_factor: NDArray
+    gravity_ports: NDArray
+    gravity_fields: NDArray
     links: Links
     control: Control
     shared: Shared

@@ -9,11 +9,15 @@ change of strain energy. What numerical damping takes is left over.
 Elements with a port leave its force, as a residual, in `State.g` when they are asked for ENERGY.
 Bodies with damping tell its power alone: it is taken in the middle of the step, at the velocities
 ``dq / h``.
+
+Gravity ``a(t) g`` has the potential ``V = -a g . m x`` with the first moment of mass ``m x``. Its
+change with time supplies energy, over a step ``(V_n + V_n+1) / 2 da`` with potentials of unit
+amplitude, which is what remains of the change of V and the work on the bodies.
 """
 
 from sebody.compiler.decorators import compiled
-from sebody.contract.layout import AT_PORT, ENERGY, POWERS, RESIDUAL
-from sebody.engine.evaluate import run_kernels, sum_forces
+from sebody.contract.layout import AT_PORT, ENERGY, FIELD, POTENTIAL, POWERS, RESIDUAL
+from sebody.engine.evaluate import run_batches, run_kernels, sum_forces
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import at, pointer_to
 from sebody.kernels.rotations import rotate
@@ -67,7 +71,7 @@ def _take_forces(system, state, factor):
 
     One pass: in a plane a step takes half a microsecond, as much as three passes of this.
     """
-    power, elements = system.first_power[0], state.acting.size - system.prescribed.shape[0]
+    power, elements = system.first_power[0], forces_of_elements(system, state)
     if elements > 0:
         run_kernels(ENERGY, power, system.address.size, system, state)
     forces, unknowns = pointer_to(state.g), pointer_to(system.g_unknown)
@@ -86,6 +90,14 @@ def _take_forces(system, state, factor):
             first += system.width[b]
     if system.prescribed.shape[0] > 0:
         _take_reactions(system, state, elements, factor)
+    if system.gravity_ports.size > 0:
+        _take_weights(system, state, elements + system.prescribed.shape[0], factor)
+
+
+@compiled
+def forces_of_elements(system, state):
+    """How many of the forces of the ports are of elements."""
+    return state.acting.size - system.prescribed.shape[0] - system.gravity_ports.size
 
 
 @compiled
@@ -99,6 +111,40 @@ def _take_reactions(system, state, first, factor):
         state.works[port] -= factor * (state.acting[n] + force) * (state.loads[3 * port]
                                                                   - state.loads_old[3 * port])
         state.acting_old[n], state.acting[n] = state.acting[n], force
+
+
+@compiled
+def _take_weights(system, state, first, factor):
+    """The same for gravity that changes with time: potentials of unit amplitude."""
+    for k in range(system.gravity_ports.size):
+        port, n = 3 * system.gravity_ports[k], first + k
+        force = -unit_potential(system, state, k)
+        state.works[system.gravity_ports[k]] -= factor * (state.acting[n] + force) * (
+            state.loads[port] - state.loads_old[port])
+        state.acting_old[n], state.acting[n] = state.acting[n], force
+
+
+@compiled
+def unit_potential(system, state, k):
+    """Potential of gravity with the amplitude 1 of one port, and 0 of the others."""
+    for i in range(system.dimension[0]):
+        state.coefficients[FIELD + i] = system.gravity_fields[k, i]
+    kept = state.energy[POTENTIAL]
+    state.energy[POTENTIAL] = 0.0 * kept
+    run_batches(ENERGY, 0, system.first_power[0], system, state)
+    potential = state.energy[POTENTIAL]
+    state.energy[POTENTIAL] = kept
+    return potential
+
+
+@compiled
+def jump_gravity(system, state):
+    """Add the work of a jump of gravity, before which loads were the old ones."""
+    first = state.acting.size - system.gravity_ports.size
+    for k in range(system.gravity_ports.size):
+        port = system.gravity_ports[k]
+        state.works[port] -= state.acting[first + k] * (
+            state.loads[3 * port] - state.loads_old[3 * port])
 
 
 @compiled
@@ -133,6 +179,9 @@ def set_powers(system, state, h):
             state.powers[_port(system, b, element)] = 0.0
     for k in range(system.prescribed.shape[0]):
         state.powers[system.prescribed[k, 1]] = 0.0
+    for port in system.gravity_ports:
+        if system.functions[port, 0] == 0:      # of functions the rate is not known
+            state.powers[port] = 0.0
     copy(state.powers, state.powers_old)
     _subtract_powers(system, state.acting_old, state.v_old, state.loads_old, state.powers_old)
     _subtract_powers(system, state.acting, state.v, state.loads, state.powers)
@@ -148,9 +197,11 @@ def _subtract_powers(system, acting, v, loads, powers):
             for k in range(place, place + system.width[b]):
                 i = system.g_unknown[k]
                 powers[_port(system, b, element)] -= acting[k - first] * v[i]
-    elements = acting.size - system.prescribed.shape[0]
-    for k in range(system.prescribed.shape[0]):
-        port = system.prescribed[k, 1]
+    behind = system.prescribed.shape[0] + system.gravity_ports.size
+    elements = acting.size - behind
+    for k in range(behind):
+        port = (system.prescribed[k, 1] if k < system.prescribed.shape[0] else
+                system.gravity_ports[k - system.prescribed.shape[0]])
         powers[port] -= acting[elements + k] * loads[3 * port + 1]
 
 

@@ -34,7 +34,7 @@ from sebody.contract.layout import (
     TRANSPOSED,
 )
 from sebody.engine.arrays import Arrays
-from sebody.engine.evaluate import run_kernels
+from sebody.engine.evaluate import run_batches
 from sebody.gradients.element_products import ROWS, run_element
 from sebody.gradients.laws import keeps
 from sebody.gradients.products import turn
@@ -236,7 +236,7 @@ def _add_forces(system, state, mask, factor, out):
     for b in range(mask.size):
         if mask[b] == 0:
             continue
-        status = run_kernels(RESIDUAL, b, b + 1, system, state)
+        status = run_batches(RESIDUAL, b, b + 1, system, state)
         if status != OK:
             return status
         for k in range(system.at_g[b], system.at_g[b] + system.count[b] * system.width[b]):

@@ -1,9 +1,8 @@
-"""Loads of a model: forces and torques, each with a name and its work, and gravity."""
+"""Loads of a model: forces and torques, each with a name and its work."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from os import PathLike
 from typing import Unpack
 
 from numpy.typing import ArrayLike
@@ -208,31 +207,6 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
     name = chosen_name(model, name, "user force")
     return _add(model, Element(name, "user_force", attachments, {}, time_function=clock(corners),
                                function=compiled))
-
-
-def gravity(model: Mechanism, field: ArrayLike) -> None:
-    """Uniform gravity on every body, through its (reduced) mass.
-
-    Parameters
-    ----------
-    field : (3,), planar (2,)
-        Acceleration of free fall [length/time^2].
-
-    Raises
-    ------
-    InputError
-        Another number of values than coordinates, values that are not finite, or a function or
-        table of time, in place of which the base moves.
-    """
-    what, count = "gravity", model.dimension
-    if (callable(field) or isinstance(field, TimeFunction | PathLike)
-            or isinstance(field, str) and field.endswith(".csv")
-            or inputs.reals(field, what, f"give {count} finite numbers").shape[1:]
-            and len(field) > 1):   # type: ignore[arg-type]
-        raise InputError(f"{what} is a function or table of time, but it is constant in a run: "
-                         f"give {count} numbers, and what changes with the opposite sign as motion "
-                         "of the base, move(node, direction, acceleration=...)")
-    model.gravity_field = vector(model, field, what)
 
 
 def _body(model: Mechanism, name: str) -> Superelement:

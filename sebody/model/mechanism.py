@@ -20,6 +20,7 @@ from sebody.model.parts import (
     Connection,
     DofBlock,
     Element,
+    GravityCourse,
     Joint,
     Motion,
     Node,
@@ -63,7 +64,8 @@ class Mechanism:
     controllers: dict[str, Controller] = field(default_factory=dict, init=False)
     switches: dict[str, Switch] = field(default_factory=dict, init=False)   # of what lets go, locks
     is_phase: bool = field(default=False, init=False)   # of a run: what acts does not change
-    gravity_field: NDArray = field(init=False)
+    gravity_field: NDArray = field(init=False)      # that is constant
+    gravity_courses: list[GravityCourse] = field(default_factory=list, init=False)
     plane: Plane | None = field(default=None, init=False)   # of a planar model made from a spatial
 
     def __post_init__(self) -> None:

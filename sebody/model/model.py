@@ -20,6 +20,7 @@ from sebody.model import (
     foundations,
     frictions,
     gears,
+    gravity_fields,
     joints,
     loads,
     moving_loads,
@@ -128,7 +129,7 @@ class Model(Mechanism):
     body_series = series.body_series
     beam_series = series.beam_series
     user_force = loads.user_force
-    gravity = loads.gravity
+    gravity = gravity_fields.gravity
     moving_force = moving_loads.moving_force
 
     actuator = actuators.actuator

@@ -47,6 +47,7 @@ class Numbering(NamedTuple):
     reads: dict[Element, list[int]] = {}    # element -> multipliers of a joint that it reads
     jumps: list[list[float]] = []       # of every power port: when accelerations jump with it
     forced: list[bool] = []             # of every power port: whether it is of a load
+    gravity: list[tuple[int, NDArray]] = []     # ports of gravity over time, and their fields
     series: dict[Element, int] = {}     # load -> first amplitude of its series in State.loads
 
     @property

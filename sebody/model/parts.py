@@ -31,6 +31,15 @@ class Motion(NamedTuple):
                 f"{self.time_function.described()}>")
 
 
+@dataclass(eq=False)
+class GravityCourse:
+    """Gravity that changes with time: a field and its amplitude."""
+
+    name: str
+    direction: NDArray      # (D,) that the amplitude multiplies [length/time^2]
+    time_function: TimeFunction
+
+
 @dataclass(eq=False, repr=False)
 class DofBlock:
     """A block of unknowns: a position or a rotation (in a plane two coordinates or an angle).

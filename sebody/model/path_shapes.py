@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.tabular import counted
+from sebody.model.gravity_fields import gravity_at
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Node, Path, PathPiece
 from sebody.model.path_tables import recovery_of
@@ -49,14 +50,15 @@ def bending(piece: PathPiece, along: NDArray | None) -> int:
 
 def cautions(model: Mechanism, path: Path) -> list[str]:
     """What there is to say of the bodies of a path that joints or forces move along."""
-    gravity = np.linalg.norm(model.gravity_field)
+    field = gravity_at(model, 0.0)
+    gravity = np.linalg.norm(field)
     found = []
     for piece in path.pieces:
         carrier = piece.carrier
         if isinstance(carrier, Node) or len(piece.ways) < 3 or (
                 piece.ways[-1] <= SHORT * path.length):
             continue
-        down = model.gravity_field / gravity if gravity > 0.0 else None
+        down = field / gravity if gravity > 0.0 else None
         if down is not None and _is_along(piece, down):
             down = None
         if (count := bending(piece, down)) < FEW:

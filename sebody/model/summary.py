@@ -41,7 +41,9 @@ def summary(model: Mechanism) -> str:
     counts = [counted(count, what) for count, what in parts if count]
     gravity = ", ".join(f"{value:g}" for value in model.gravity_field)
     return (f"{'planar' if model.planar else 'spatial'} model: {', '.join(counts) or 'empty'}"
-            + (f"; gravity ({gravity})" if model.gravity_field.any() else ""))
+            + (f"; gravity ({gravity})" if model.gravity_field.any() else "")
+            + "".join(f"; {one.name} ({', '.join(f'{x:g}' for x in one.direction)}) times "
+                      f"{one.time_function.described()}" for one in model.gravity_courses))
 
 
 def described(model: Mechanism) -> str:

@@ -126,7 +126,18 @@ def constants_of(element: Element, made: Callable[[NDArray], dict], touches: str
 
 
 def gravity(model: Model) -> Handle:
-    """Acceleration of free fall."""
+    """Acceleration of free fall; of a field with an amplitude the field.
+
+    Raises
+    ------
+    InputError
+        Gravity of several functions of time.
+    """
+    if len(model.gravity_courses) > 1:
+        raise InputError("gravity has components that are functions of time, so no number of it "
+                         "can be varied: give model.gravity a field and its amplitude")
+    if model.gravity_courses:
+        return attribute_of(model.gravity_courses[0], "direction", LOADS)
     return attribute_of(model, "gravity_field", LOADS)
 
 

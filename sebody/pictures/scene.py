@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.basics.units import Units
+from sebody.model.gravity_fields import gravity_at
 from sebody.model.mechanism import Mechanism
 from sebody.model.shafts import is_unbalance
 from sebody.pictures.arrows import Arrow, arrows
@@ -96,7 +97,7 @@ def scenery(result: Result, most: int, stressed: bool = False, reference: str | 
                    signs(model, set(nodes)), contact_surfaces(model, nodes, extent(nodes)),
                    drawn_ropes(result, states, nodes),
                    arrows(result, states, set(nodes), drawn),
-                   spatial(np.asarray(model.gravity_field)), model.planar,
+                   spatial(gravity_at(model, 0.0)), model.planar,
                    *_view(model, nodes), result.units)
 
 
@@ -160,7 +161,7 @@ def _entries(model: Mechanism, bodies: list[DrawnBody], lines: list[Link]) -> li
 
 def _view(model: Mechanism, nodes: dict[str, DrawnNode]) -> tuple[NDArray, NDArray, NDArray]:
     """Up on the screen, where to look from, and the grid's normal: that of motions in a plane."""
-    gravity = spatial(np.asarray(model.gravity_field))
+    gravity = spatial(gravity_at(model, 0.0))
     weight = np.linalg.norm(gravity)
     if model.planar:
         return np.eye(3)[1], np.eye(3)[2], np.eye(3)[2]

@@ -17,7 +17,7 @@ from sebody.contract.counts import Counts
 from sebody.contract.layout import ENERGY as ENERGIES, MOTION as MOTION_ROW, OK, RESIDUAL, VELOCITY
 from sebody.contract.read_numbers import ENERGY, FORCE, LOAD, MOTION, NOW, RESIDUE, TOTAL
 from sebody.engine.arrays import Arrays
-from sebody.engine.evaluate import assemble, run_kernels, run_part, set_loads
+from sebody.engine.evaluate import assemble, run_kernels, run_part, set_gravity, set_loads
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.engine.vectors import copy
@@ -149,6 +149,7 @@ def evaluate(system, state, reading):
         return evaluate_loaded(system, state, reading)
     copy(state.loads, reading.loads)
     set_loads(system, state.frames, state.loads, state.clock.time)
+    set_gravity(system, state)
     status = evaluate_loaded(system, state, reading)
     copy(reading.loads, state.loads)
     return status

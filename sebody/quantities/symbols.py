@@ -171,6 +171,8 @@ class Symbols(Recorded):
         return self.tape.read(RESIDUE, k)
 
     def power(self, port: int) -> Number:
+        if any(port == one for one, _ in self.numbering.gravity):
+            raise NoTape("powers of gravity that changes with time")
         prescribed = [
             (int(coordinate), float(factor)) for (coordinate, of_port, _), factor in zip(
                 self.system.prescribed, self.system.prescribed_factor, strict=True)

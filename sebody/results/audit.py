@@ -143,11 +143,11 @@ def _acting(result: Recording) -> tuple[NDArray, NDArray]:
                 total += values
                 moment += moment_of(result.recorded("q")[:, stretch(
                     result.numbering, place.dof_block)], values)
-    weight = mass * model.gravity_field
+    weight = mass * result.gravity
     # the first moment of mass moves on with the momentum
     moved = first + _integral(result.recorded("t")[:, 0],
                               _sums(result, "momentum")[:, :model.dimension])
-    moment += moment_of(moved, np.broadcast_to(model.gravity_field, moved.shape))
+    moment += moment_of(moved, result.gravity)
     if model.planar:
         total = np.column_stack([total + weight, np.zeros(n)])
         moment = np.column_stack([np.zeros((n, 2)), moment])

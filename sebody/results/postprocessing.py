@@ -16,6 +16,7 @@ from sebody.engine.evaluate import assemble, run_kernels, set_loads
 from sebody.engine.state import State
 from sebody.engine.system import System
 from sebody.engine.vectors import copy
+from sebody.engine.work import unit_potential
 
 
 class Forces(NamedTuple):
@@ -80,6 +81,19 @@ def prescribed_powers(system: System, t: NDArray, kept: NDArray, sums: NDArray,
     return with_prescribed
 
 
+def unit_potentials(system: System, state: State, rows: NDArray) -> NDArray:
+    """Potentials of gravity with the amplitude 1, of all its ports in recorded states, (n, ports).
+
+    Raises
+    ------
+    InputError
+        A state that cannot be evaluated.
+    """
+    potentials = np.zeros((len(rows), len(system.gravity_ports)))
+    _over_records("potentials", _evaluate_potentials, system, state, rows, potentials)
+    return potentials
+
+
 def constraint_residuals(system: System, state: State, rows: NDArray) -> NDArray:
     """Largest residual of the constraints and of their rates in every recorded state, (n, 2).
 
@@ -115,6 +129,15 @@ def _evaluate_energies(system, state, rows, out):
         if status != 0:
             return status
         copy(state.energy, out[k])
+    return 0
+
+
+@compiled
+def _evaluate_potentials(system, state, rows, out):
+    for k in range(len(rows)):
+        copy(rows[k], state.now)
+        for j in range(system.gravity_ports.size):
+            out[k, j] = unit_potential(system, state, j)
     return 0
 
 

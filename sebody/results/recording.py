@@ -13,6 +13,7 @@ from sebody.contract.layout import ENERGIES, FIELD, RECORD
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import State
 from sebody.engine.system import System
+from sebody.model.gravity_fields import rate_at
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering, record_counts
 from sebody.model.summary import summary
@@ -24,6 +25,7 @@ from sebody.results.postprocessing import (
     energies,
     forces,
     prescribed_powers,
+    unit_potentials,
 )
 
 
@@ -83,10 +85,19 @@ class Recording:
 
     @property
     def gravity(self) -> NDArray:
-        """Acceleration of free fall in this run, which an ensemble may vary, (D,)."""
-        if self.state is None:
-            return self.model.gravity_field
-        return self.state.coefficients[FIELD:FIELD + self.model.dimension]
+        """Acceleration of free fall in all recorded states, which an ensemble may vary, (n, D)."""
+        count = self.model.dimension
+        if self.numbering.gravity:
+            fields = [field for _, field in self.numbering.gravity]
+            if self.system is not None:
+                fields = list(self.system.gravity_fields[:, :count])
+            times = self.recorded("t")[:, 0]
+            amplitudes = [self.numbering.time_functions[port].values(times)
+                          for port, _ in self.numbering.gravity]
+            return np.stack(amplitudes, axis=1) @ np.stack(fields)
+        constant = (self.model.gravity_field if self.state is None else
+                    self.state.coefficients[FIELD:FIELD + count])
+        return np.broadcast_to(constant, (len(self.rows), count))
 
     @cached_property
     def unique_rows(self) -> NDArray:
@@ -133,9 +144,15 @@ class Recording:
         rows = self.unique_rows
         evaluated = (self.energies if rows is self.rows else
                      energies(*self.arrays_of_loop, rows))
-        return prescribed_powers(self.arrays_of_loop[0], self.recorded("t")[:, 0],
-                                 np.ascontiguousarray(self.recorded("frames")), self.forces.sums,
-                                 evaluated[:, at])
+        powers = prescribed_powers(self.arrays_of_loop[0], self.recorded("t")[:, 0],
+                                   np.ascontiguousarray(self.recorded("frames")),
+                                   self.forces.sums, evaluated[:, at])
+        if self.numbering.gravity:
+            ports = [port for port, _ in self.numbering.gravity]
+            rates = [[rate_at(self.numbering.time_functions[port], t) for port in ports]
+                     for t in self.recorded("t")[:, 0]]
+            powers[:, ports] = rates * unit_potentials(*self.arrays_of_loop, rows)
+        return powers
 
     @cached_property
     def constraint_residuals(self) -> NDArray:

@@ -36,8 +36,8 @@ class Stresses:
     body : Superelement
     motion : BodyMotion
         In all recorded states.
-    gravity : (D,)
-        In global axes.
+    gravity : (n, D)
+        In global axes, in all recorded states.
     loads : (n, loads of the body), optional
         Their amplitudes in all recorded states, if the static response of the omitted modes is
         added.
@@ -248,7 +248,7 @@ class Stresses:
         else:
             centre = (m.acceleration + np.cross(m.spin_rate, arm)
                       + np.cross(m.spin, np.cross(m.spin, arm)))
-        felt = centre - np.einsum("nji,j->ni", m.rotation, self._gravity)
+        felt = centre - np.einsum("nji,nj->ni", m.rotation, self._gravity)
         rigid = reduced.rigid_modes_about(middle)[:first_mode]
         boundary = np.hstack([felt, m.spin_rate]) @ rigid.T + m.y_second[:, :first_mode]
         spin, recovery = m.spin, self._recovery

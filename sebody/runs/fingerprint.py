@@ -42,7 +42,7 @@ def _hashed(model: Model, numbering: Numbering, system: System, state: State) ->
         array.tobytes() for array in (
             system.constants, system.g_unknown, system.table_times, system.table_pieces,
             system.series_times, system.series_values, system.corners, system.prescribed,
-            system.prescribed_factor, model.gravity_field, state.q_start)]
+            system.prescribed_factor, system.gravity_fields, model.gravity_field, state.q_start)]
     return sha256(b"".join(parts)).hexdigest()
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.engine.state import State
+from sebody.model.gravity_fields import has_gravity
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering
 from sebody.model.parts import SLIDES, TURNS, Element, Superelement
@@ -66,7 +67,7 @@ def _locked(model: Mechanism) -> str:
 
 def _falling(model: Mechanism) -> str:
     """Remark on bodies that start from rest where they are not connected to the ground."""
-    if not model.gravity_field.any():
+    if not has_gravity(model):
         return ""
     names = [name for group in untied(model) for name in group
              if not any(rate.any() for rate in _rates(model, group))]

@@ -274,7 +274,8 @@ LOADS = {
                       *have("node", [None], ["far"], ["turn"])],
             "function": [*are("user force 'new'", None, 3, "sin", also=": give a function of (t,"),
                          *have("user force 'new' has the arguments (t): give", lambda t: t)]}),
-    "gravity": Right(Model.gravity, {"field": Z}, {"field": vectors("gravity", 3)}),
+    "gravity": Right(Model.gravity, {"field": Z}, {
+        "field": vectors("gravity", 3), "amplitude": histories()}),
     "spring": Right(Model.spring, {"node": "a", "to": "b", "stiffness": 1.0}, {
         "node": nodes(lacks_place),
         "to": [*[pair for pair in nodes(itself, ("c", "nodes 'a' and 'c' coincide"))

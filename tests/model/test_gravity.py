@@ -1,7 +1,6 @@
 """Gravity from the reduced mass: free fall, a falling pendulum, work against the potential."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -95,15 +94,3 @@ def test_bad_gravity_is_refused():
         Model().gravity((0.0, -9.81))
     with pytest.raises(InputError, match="gravity is .*: give 2 finite numbers"):
         Model(planar=True).gravity((0.0, np.nan))
-
-
-@pytest.mark.parametrize("given", [
-    lambda t: (0.0, 0.0, -9.81 * t), [(0.0, 0.0, 0.0, -9.81), (1.0, 0.0, 0.0, 0.0)],
-    [(0.0, -9.81), (1.0, 0.0)], "gravity.csv", Path("gravity.csv")])
-def test_gravity_of_time_is_refused(given):
-    """A base that moves the other way is the remedy."""
-    model = Model()
-    with pytest.raises(InputError, match="gravity is a function or table of time.*give 3 numbers"
-                       r".*opposite sign.*move\(node, direction, acceleration="):
-        model.gravity(given)
-    assert not model.gravity_field.any()

@@ -5,7 +5,7 @@ from sebody.compiler.inside.lanes import bits_of, spread
 from sebody.contract.layout import ENERGY as ENERGIES, RESIDUAL
 from sebody.contract.member_row import RUNNING
 from sebody.contract.read_numbers import ENERGY, FORCE, TOTAL
-from sebody.engine.evaluate import run_kernels, run_part, set_loads, sum_forces
+from sebody.engine.evaluate import run_kernels, run_part, set_gravity, set_loads, sum_forces
 from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.vectors import copy
 from sebody.kernels.abi import pointer_to
@@ -20,6 +20,7 @@ def write_evaluated(system, state, scratch, record, row):
     copy(state.frames, scratch.frames)
     copy(state.loads, record.loads)
     set_loads(system, state.frames, state.loads, state.clock.time)
+    set_gravity(system, state)
     scratch.table[RUNNING] = bits_of(state.control.reason != GAVE_UP)
     if record.needs[ENERGY] == 1:
         for i in range(state.energy.size):

@@ -178,8 +178,8 @@ def _guard(lab: Laboratory) -> None:
 
 def _off_grid(fine: float, model: Model) -> float:
     """A step that is slightly shorter than another one; it divides the periods of samples, too."""
-    periods = [one.period for one in (*model.sensors.values(), *model.controllers.values())
-               if one.period]
+    periods = [one.period for one in model.sensors.values() if one.period]
+    periods += [one.period for one in model.controllers.values() if one.period]
     return max(periods) / (round(max(periods) / fine) + 1) if periods else OFF_GRID * fine
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
+from sebody.model.gravity_fields import gravity_at
 from sebody.model.mechanism import Mechanism
 from sebody.model.variants.copying import copied
 from sebody.results.result import Result
@@ -37,7 +38,7 @@ def steady_frequencies(result: Result) -> NDArray:
         return modes(equilibrium(model, spin=spin), spin).omega
     loaded = any(one.time_function is not None and one.time_function.at(0.0)[0]
                  for one in model.loads)
-    if loaded or np.any(model.gravity_field):
+    if loaded or gravity_at(model, 0.0).any():
         return modes(equilibrium(model)).omega
     return modes(Simulation(model, STEP)).omega
 

@@ -14,6 +14,7 @@ from sebody.assembly.elimination_order import parents
 from sebody.basics.errors import InputError
 from sebody.contract.names import IN_PLANE
 from sebody.explore.assemblies.wanted import Interfaces
+from sebody.model.gravity_fields import has_gravity
 from sebody.model.model import Model
 from sebody.model.parts import DofBlock, Element, Joint
 from sebody.model.path_joints import PATH
@@ -86,7 +87,7 @@ def _refuse_load(load: Element, held: set[DofBlock]) -> None:
 def without_gravity(model: Model) -> Model:
     """A copy without gravity: the body bears its own where it is put."""
     made: Model = copied(model)     # type: ignore[assignment]
-    made.gravity_field = np.zeros(model.dimension)
+    made.gravity_field, made.gravity_courses = np.zeros(model.dimension), []
     return made
 
 
@@ -96,7 +97,7 @@ def freed(model: Model, interfaces: Interfaces) -> Freed:
     held = set(interfaces.blocks(made))
     supports = [joint for joint in made.joints if _supports(made, joint, held)]
     loads = [load for load in made.loads if load.kind.removeprefix(IN_PLANE) in OUTER]
-    left_out = ["gravity, which the body bears itself"] * bool(model.gravity_field.any())
+    left_out = ["gravity, which the body bears itself"] * has_gravity(model)
     left_out += [f"{joint.kind} {joint.name!r}" for joint in supports]
     left_out += [f"{load.kind.removeprefix(IN_PLANE).replace('_', ' ')} {load.name!r}"
                  for load in loads]

@@ -52,6 +52,7 @@ def copied(model: Mechanism) -> Mechanism:
     constant += [*model.controllers.values(), *model.sensors.values()]
     constant += [motion.time_function for dof_block in model.dof_blocks()
                  for motion in dof_block.motions]
+    constant += [one.time_function for one in model.gravity_courses]
     return deepcopy(model, {id(one): one for one in constant})
 
 

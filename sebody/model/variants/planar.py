@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -104,7 +105,7 @@ def _normals(model: Mechanism) -> Iterator[NDArray]:
     axial += [sheave.axis for sheave in model.sheaves.values()]
     axial += [one.direction for one in model.loads if "torque" in one.kind]
     inside = [node.point - next(iter(model.nodes.values())).point for node in model.nodes.values()]
-    inside += [model.gravity_field]
+    inside += [model.gravity_field, *(one.direction for one in model.gravity_courses)]
     inside += [one.direction for one in model.loads if one.kind in ("force", "follower_force")]
     for dof_block in model.dof_blocks():
         if dof_block.start.size == 1:       # a length of a rope
@@ -150,6 +151,8 @@ class _Flat(NamedTuple):
         made.nodes = {name: flat.node(node) for name, node in model.nodes.items()}
         made.grounds = [flat.node(node) for node in model.grounds]
         made.gravity_field = flat.vector(model.gravity_field, "gravity")
+        made.gravity_courses = [replace(one, direction=flat.vector(one.direction, one.name))
+                                for one in model.gravity_courses]
         for dof_block in model.dof_blocks():
             flat.dof_block(dof_block).motions = [flat.motion(motion)
                                                  for motion in dof_block.motions]
