@@ -62,7 +62,7 @@ def allocate(model: Mechanism, system: System, numbering: Numbering, h: float, d
         forces=zeros(total), constraint_residuals=zeros(total), shift=zeros(total),
         correction=zeros(whole_vectors(total) + LANES), solution=zeros(system.slot_unknowns.size),
         last_correction=zeros(total), last_change=zeros(total),
-        moved=np.ones(len(system.summands), dtype=bool),
+        moved=np.ones(len(system.summands)),
         error_weights=zeros(total),
         schedule=zeros((0, 2)) if schedule is None else schedule.copy(),
         step_log=zeros((logged, 3)), expansion=zeros(_expansion_size(system)),

@@ -8,6 +8,7 @@ from sebody.contract.layout import C_DAMPING, CLOCK, FIELD, INPUT, OK, RESIDUAL,
 from sebody.engine.actuator_inputs import input_at
 from sebody.engine.links import place_dependent, pull_back
 from sebody.engine.load_amplitudes import set_series, time_function_at
+from sebody.engine.selection import any_true, either
 from sebody.kernels.abi import Arguments, at, call_kernel, called, pointer_to
 from sebody.kernels.rotations import rotate, tangent_operator
 
@@ -189,8 +190,9 @@ def run_moved(system, state):
     before, limit = 0, limit_of_moved(state)
     for b in range(system.address.size):
         for first in range(0, system.count[b], SHARE):
-            status = run_moved_share(system, state, b, first, min(SHARE, system.count[b] - first),
-                                     before, limit, pointer_to(state.work))
+            count = min(SHARE, system.count[b] - first)
+            find_moved(system, state, b, first, count, before, limit)
+            status = run_found(system, state, b, first, count, before, pointer_to(state.work))
             if status != OK:
                 return status
         before += system.count[b]
@@ -198,25 +200,30 @@ def run_moved(system, state):
 
 
 @compiled
-def run_moved_share(system, state, b, first, count, before, limit, work):
-    """The same for some elements of a batch, which `before` elements of other batches precede."""
-    unknowns, moved = pointer_to(system.g_unknown), state.moved
+def find_moved(system, state, b, first, count, before, limit):
+    """Find what moved of some elements of a batch, which `before` elements of others precede."""
+    unknowns = pointer_to(system.g_unknown)
     k = system.at_g[b] + first * system.width[b]
-    for element in range(first, first + count):
-        size = 0.0
+    for element in range(before + first, before + first + count):
+        size = 0.0 * limit
         for _ in range(system.width[b]):
             i = unknowns[k]
             change = state.last_change[i] * state.weight[i]
             size += change * change
             k += 1
-        moved[before + element] = size > limit
+        state.moved[element] = either(size > limit, 1.0, 0.0)
+
+
+@compiled
+def run_found(system, state, b, first, count, before, work):
+    """Evaluate the forces of those that were found, in lanes in any member."""
     begin, last = first, first + count
     while begin < last:
-        if not moved[before + begin]:
+        if not any_true(state.moved[before + begin] > 0.0):
             begin += 1
             continue
         end = begin + 1
-        while end < last and moved[before + end]:
+        while end < last and any_true(state.moved[before + end] > 0.0):
             end += 1
         status = run_part(RESIDUAL, b, begin, end - begin, system, state, work)
         if status != OK:

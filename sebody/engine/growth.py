@@ -65,10 +65,13 @@ GUARD = np.dtype([(name, np.float64) for name in (
 
 
 @compiled
-def grows(system, state):
-    """Whether a converged step is to be rejected, because energy grows in it."""
+def grows(system, state, members, converged):
+    """Whether a converged step is to be rejected, because energy grows in it.
+
+    `members` as in `sebody.engine.iteration`.
+    """
     guard = state.guard
-    if guard.off == 1.0:
+    if guard.off == 1.0 or not converged:
         return False
     count_supplied(state, True)
     cut = state.control.level > guard.halved      # Newton's iteration has not converged

@@ -296,25 +296,32 @@ def want_matrix(system, state, wanting):
 
 
 @compiled(forceinline=True)
-def forget_matrix(state):
-    """Reset what is known of the convergence with the bodies' old element matrices."""
+def forget_matrix(state, renewed):
+    """Reset what is known of the convergence with the bodies' old element matrices.
+
+    In lanes, of the members whose matrices are `renewed`.
+    """
     clock, control = state.clock, state.control
-    control.age, clock.baseline_contraction, clock.excess = 0, 0.5, 0.0
-    clock.factor_step, control.refreshed = clock.current_step, 0
+    control.age = either(renewed, 0, control.age)
+    control.refreshed = either(renewed, 0, control.refreshed)
+    clock.baseline_contraction = either(renewed, 0.5, clock.baseline_contraction)
+    clock.excess = either(renewed, 0.0, clock.excess)
+    clock.factor_step = either(renewed, clock.current_step, clock.factor_step)
 
 
 @compiled(forceinline=True)
-def count_matrix(state, wanted):
-    """Reset what belongs to the old matrix, before the new one is factorized."""
+def count_matrix(state, wanted, evaluated):
+    """Reset what belongs to the old matrix, before the new one is factorized.
+
+    In lanes, of the members that have `wanted` one; whose bodies' matrices are new, are among them.
+    """
     control = state.control
-    if wanted == EVALUATED:
-        forget_matrix(state)
-    else:
-        control.refreshed += 1
-    control.wanted = KEPT
-    control.secant = 0
-    control.fresh += 1
-    control.matrices += 1
+    control.refreshed = either(wanted, control.refreshed + 1, control.refreshed)
+    forget_matrix(state, evaluated)
+    control.wanted = either(wanted, KEPT, control.wanted)
+    control.secant = either(wanted, 0, control.secant)
+    control.fresh = either(wanted, control.fresh + 1, control.fresh)
+    control.matrices = either(wanted, control.matrices + 1, control.matrices)
 
 
 @compiled(forceinline=True)

@@ -11,8 +11,9 @@ from sebody.contract.layout import OK, RESIDUAL, TANGENT
 from sebody.engine import elimination
 from sebody.engine.evaluate import (
     SHARE,
+    find_moved,
     limit_of_moved,
-    run_moved_share,
+    run_found,
     run_part,
     set_gravity,
 )
@@ -142,6 +143,7 @@ def _evaluate(system, state, task, piece, thread):
     count = min(SHARE, system.count[b] - first)
     work = at(pointer_to(system.shared.work), thread * system.shared.work.shape[1])
     if task == SHARE_MOVED:
-        return run_moved_share(system, state, b, first, count, before, limit_of_moved(state), work)
+        find_moved(system, state, b, first, count, before, limit_of_moved(state))
+        return run_found(system, state, b, first, count, before, work)
     matrices = task >= EVALUATED or (task != KEPT and b >= system.first_joint[0])
     return run_part(TANGENT if matrices else RESIDUAL, b, first, count, system, state, work)

@@ -26,6 +26,7 @@ CONVERGED, GO_ON, NEW_MATRIX, GIVE_UP, LEAVES_GAP = range(5)    # verdicts after
 NO_REASON = OK
 NOT_FINITE, SLOW, INACCURATE, GAP = range(OFF_PATH + 1, OFF_PATH + 5)
 NO_START, BAD_CONTROL, CONTACT, GROWS, NO_AID = range(GAP + 1, GAP + 6)
+ANEW = NO_AID + 1       # no failure: the step is to be made once more, with new matrices
 REASONS = {
     HALF_TURN: "a node is rotated by nearly half a revolution relative to its body frame",
     NO_FRAME: "the iteration for a body frame did not converge",
@@ -109,7 +110,7 @@ class State(Arrays):
     rotated_matrix        one element matrix, positions in the axes they are solved for in
     energy                the row `layout.ENERGIES`
     work                  scratch memory of kernels
-    moved                 (elements,) whether the last correction moved the element
+    moved                 (elements,) one where the last correction moved the element, else zero
     expansion             scratch memory for element matrices with rigid links
     --------------------  --------------------------------------------------------------------------
     Newton's iteration

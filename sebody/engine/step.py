@@ -27,6 +27,7 @@ from sebody.engine.evaluate import (
 )
 from sebody.engine.newton import OLDEST_ROTATED, SLOWEST, forget_matrix, watch_age
 from sebody.engine.prediction import BEFORE, FITTED, LAST, look_back, ring_place, row
+from sebody.engine.selection import any_true, either
 from sebody.engine.state import (
     ASKED,
     CONTACT,
@@ -47,48 +48,55 @@ FIRST_RENEWED = 2       # steps before the first whose matrices are made before 
 
 
 @compiled
-def renew_bodies(system, state, scheme):
+def renew_bodies(system, state, members, scheme, active):
     """Make new element matrices of bodies before the next step is predicted, if it wants new ones.
 
     The errors of a predicted state stretch stiff bodies, and the false axial forces would be in
     their geometric stiffness. Not where factors are kept for samples, whose matrices are others.
+    `members` and `active` as in `sebody.engine.iteration`.
     """
     control, clock = state.control, state.clock
-    if (system.first_joint[0] == 0 or clock.factor_step != clock.current_step
-            or control.iteration == 0 or control.steps < FIRST_RENEWED or control.pivoted == 1
-            or system.regularized[0] == 1 or state.spare.size > 0):
+    if (system.first_joint[0] == 0 or control.pivoted == 1 or system.regularized[0] == 1
+            or state.spare.size > 0):
         return
-    aged = (control.wanted == KEPT and control.back_off_left > 0
-            and control.age >= OLDEST_ROTATED)
-    if control.wanted != EVALUATED and not aged:
+    aged = ((control.wanted == KEPT) & (control.back_off_left > 0)
+            & (control.age >= OLDEST_ROTATED))
+    renewed = (active & (clock.factor_step == clock.current_step) & (control.iteration > 0)
+               & (control.steps >= FIRST_RENEWED) & (aged | (control.wanted == EVALUATED)))
+    if not any_true(renewed):
         return
     set_coefficients(state, scheme, clock.current_step)     # a restart has others
+    renewed = evaluate_bodies(system, state, members, renewed)
+    forget_matrix(state, renewed)
+    control.wanted = either(renewed, RENEWED, control.wanted)
+
+
+@compiled
+def evaluate_bodies(system, state, members, renewed):
+    """Make element matrices of bodies; returns whether they have been made, in lanes of whom."""
     set_tangent_operators(system, state)
     if system.routines[3] != 0:
-        status = call_share(system.routines[3], system, state, RENEWED, 0)
-    else:
-        status = run_kernels(TANGENT, 0, system.first_joint[0], system, state)
-    if status == OK:
-        forget_matrix(state)
-        control.wanted = RENEWED
+        return call_share(system.routines[3], system, state, RENEWED, 0) == OK
+    return run_kernels(TANGENT, 0, system.first_joint[0], system, state) == OK
 
 
 @compiled(forceinline=True)
 def begin_step(system, state, scheme):
     """Remember the accepted state, predict the next one at the end of the step."""
-    h = state.clock.current_step
+    h, control = state.clock.current_step, state.control
     set_end(system, state)
     # auxiliary accelerations belong to a time that is later by (alpha_m - alpha_f) h
     offset = h / state.clock.aux_step
     # after rejected steps and new matrices, and in parts of steps, which come where a motion is
     # not smooth, nothing is predicted to change
-    wanted = state.control.wanted
-    kept = (state.control.fresh == 0 and (wanted == KEPT or wanted == RENEWED) and offset == 1.0
-            and state.control.level == 0)
-    if state.control.iteration > 0 and state.control.steps > 0:     # no step that is repeated
+    kept = (control.fresh == 0) & ((control.wanted == KEPT) | (control.wanted == RENEWED))
+    follow = either(kept, 1.0, 0.0)
+    if offset != 1.0 or control.level > 0:
+        follow = 0.0 * follow
+    if any_true((control.iteration > 0) & (control.steps > 0)):     # no step that is repeated
         look_back(system, state, scheme.beta * h * h)
-    predict(system, state, scheme, 1.0 if kept else 0.0, offset)
-    state.control.iteration, state.control.secant = 0, 0
+    predict(system, state, scheme, follow, offset)
+    control.iteration, control.secant = 0, 0
     state.clock.last_norm = 0.0
 
 
@@ -162,11 +170,7 @@ def set_coefficients(state, scheme, h):
 def accept(system, state, record):
     """End a converged step: orthogonal rotations, output."""
     control = state.control
-    settle(system, state, control.steps)
-    watch_age(state)
-    if control.fresh == 0:
-        control.back_off = 0
-    control.steps += 1
+    count_step(system, state, control.steps)
     if control.adaptive == 1:
         go_on(state)
     else:
@@ -174,12 +178,19 @@ def accept(system, state, record):
 
 
 @compiled(forceinline=True)
-def settle(system, state, steps):
-    """After some steps make rotations orthogonal; forget the norm of accelerations slowly."""
+def count_step(system, state, steps):
+    """Count an accepted step; after some `steps` make rotations orthogonal.
+
+    The norm of accelerations is forgotten slowly.
+    """
+    control = state.control
     if steps % ORTHOGONAL == 0:
         for r in range(system.rotation_at.size):
             orthogonalize(at(pointer_to(state.R), 9 * r))
     state.clock.acceleration_norm *= MEMORY
+    watch_age(state)
+    control.back_off = either(control.fresh == 0, 0, control.back_off)
+    control.steps += 1
 
 
 @compiled(forceinline=True)

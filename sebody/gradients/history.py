@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 from sebody.basics import memory
 from sebody.basics.errors import SimulationError
 from sebody.contract.layout import C_STIFFNESS, RECORD_T
-from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import FAILED, Record, State
 from sebody.engine.step import write_record
-from sebody.runs.aid import Aid
+from sebody.runs.aid import Aid, advance
 from sebody.runs.failures import explained
 from sebody.runs.simulation import Simulation
 
@@ -143,8 +142,7 @@ def _whole(run: Simulation, first: int, last: int) -> History | None:
     record = Record.of(state, count + 1)
     state.control.recorded = 0
     write_record(state, record)
-    code = advance(run.system, state, record, run.scheme, last, count + 1, run.dense)
-    run.aid.check()
+    code = advance(run, record, last, count + 1)
     if code == FAILED or state.control.steps - steps != count or state.control.cuts > cuts:
         put_back(state, start)
         run.aid.forget()
@@ -177,9 +175,7 @@ def put_back(state: State, numbers: list[NDArray]) -> None:
 def _one_step(run: Simulation, record: Record, last: int) -> bool:
     """Advance by one accepted step, and by the restart that may follow; False if it fails."""
     run.state.control.recorded = 0
-    code = advance(run.system, run.state, record, run.scheme, last, 1, run.dense)
-    run.aid.check()
-    return code != FAILED
+    return advance(run, record, last, 1) != FAILED
 
 
 class _Events:

@@ -1,13 +1,15 @@
-"""Aid of a loop that Python runs: factors with row exchanges, readings of sensors."""
+"""The loop as Python runs it, and its aid: factors with row exchanges, readings of sensors."""
 
 import weakref
 from collections.abc import Callable
 from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
+from typing import Protocol
 
+from sebody.engine import loop
 from sebody.engine.aid import ADDRESS
 from sebody.engine.row_exchanges import Exchanges, exchange
 from sebody.engine.sparse_lu import ROOM
-from sebody.engine.state import READINGS, State
+from sebody.engine.state import READINGS, Record, Scheme, State
 from sebody.engine.system import System
 
 _AID = CFUNCTYPE(c_int64, c_int64, c_int64)     # takes Python's lock
@@ -72,3 +74,23 @@ class Aid:
 
     def _room(self, entries: int) -> Exchanges:
         return Exchanges.of(self.system.diagonal.size, self.system.rows.size, entries)
+
+
+class Run(Protocol):
+    """What the loop is given of a run."""
+
+    system: System
+    state: State
+    scheme: Scheme
+    dense: bool
+    aid: Aid
+
+
+def advance(run: Run, record: Record, last: int, steps: int) -> int:
+    """Run to a step of the grid, or so many steps: the code of `sebody.engine.loop.advance`.
+
+    What is raised in the aid is raised again.
+    """
+    code = loop.advance(run.system, run.state, record, run.scheme, last, steps, run.dense)
+    run.aid.check()
+    return code

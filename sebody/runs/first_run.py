@@ -28,7 +28,17 @@ from sebody.compiler.decorators import is_compiled
 from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.contract.names import SUPERELEMENT
-from sebody.engine import evaluate, links, loop, matrix, newton, restart, step, step_control
+from sebody.engine import (
+    evaluate,
+    iteration,
+    links,
+    loop,
+    matrix,
+    newton,
+    restart,
+    step,
+    step_control,
+)
 from sebody.engine.routines import compile_routine
 from sebody.engine.state import Record, State
 from sebody.engine.system import System
@@ -61,9 +71,10 @@ LOOP = {        # callees of the loop, which waits for them
     "forces in the loop": Part(_callee(evaluate.assemble), "whole whole system state vector", 0.6),
     "output": Part(_callee(step_control.write_between), "system state record whole", 1.2),
     "correction": Part(_callee(newton.correct), "system state scheme flag whole flag", 1.1),
-    "evaluation": Part(_callee(loop._evaluate), "system state scheme whole flag", 0.8,
+    "evaluation": Part(_callee(iteration.run_wanted), "system state nobody flag flag flag", 0.8,
                        ("forces in the loop",)),
-    "conclusion": Part(_callee(loop._conclude), "system state record scheme whole", 1.4),
+    "works": Part(_callee(iteration.guard_works), "system state nobody flag", 1.0),
+    "acceptance": Part(_callee(step.accept), "system state record", 0.7),
     "solution": Part(_callee(matrix.solve), "system state flag", 0.5),
     "beginning": Part(_callee(step.begin_step), "system state scheme", 0.7),
     "choice": Part(_callee(step_control.choose_step), "system state", 0.1),
@@ -179,7 +190,8 @@ def examples() -> dict:
     parts = {"system": system, "state": state, "record": Record.of(state, 1), "links": system.links,
              "scheme": generalized_alpha(), "vector": state.residual, "table": state.inverse,
              "movements": np.zeros((1, 1, 1)), "indices": np.zeros((1, 1), dtype=np.int64),
-             "places": np.zeros(1, dtype=np.int64), "whole": 1, "number": 1.0, "flag": True}
+             "places": np.zeros(1, dtype=np.int64), "whole": 1, "number": 1.0, "flag": True,
+             "nobody": None}
     return {name: typeof(value) for name, value in parts.items()}
 
 

@@ -15,7 +15,6 @@ from sebody.assembly.close_rows import Grid
 from sebody.basics import inputs
 from sebody.basics.errors import InputError, Interrupted, SimulationError
 from sebody.basics.progress import showing
-from sebody.engine.loop import advance
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
 from sebody.engine.system import System
@@ -26,7 +25,7 @@ from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result
 from sebody.runs import user_faults
-from sebody.runs.aid import Aid
+from sebody.runs.aid import Aid, advance
 from sebody.runs.failures import explained, of_start
 from sebody.runs.first_run import prepare
 from sebody.runs.given_start import energy_lost, take
@@ -317,9 +316,8 @@ class Simulation:
         helped = helping(self.system, state) if worth_help(self.system, count) else nullcontext()
         began = time.perf_counter()
         with helped:
-            code = advance(self.system, state, buffer, self.scheme, last, FEW + 1, self.dense)
+            code = advance(self, buffer, last, FEW + 1)
         self.seconds += time.perf_counter() - began
-        self.aid.check()
         return code == DONE
 
     def flush(self) -> None:
@@ -333,8 +331,7 @@ class Simulation:
         code, chunk = CHUNK, FIRST_CHUNK
         while code not in (DONE, FAILED):
             began = time.perf_counter()
-            code = advance(self.system, self.state, record, self.scheme, last, chunk, self.dense)
-            self.aid.check()
+            code = advance(self, record, last, chunk)
             if self.plan.logged:
                 self.log.take(self.state)
             took = time.perf_counter() - began
@@ -373,9 +370,7 @@ class Simulation:
         self.system.routines[:] = addresses(self.system, state)
         if self.tolerance is not None:
             state.clock.current_step = FIRST_STEP * self.h     # so far ahead it looks
-        none = self.rows.none()
-        code = advance(self.system, state, none, self.scheme, 0, 0, self.dense)
-        self.aid.check()
+        code = advance(self, self.rows.none(), 0, 0)
         if code == FAILED and (did := user_faults.fault(self.model, 0.0)):
             raise InputError(f"the run cannot begin: {did}")
         if code == FAILED:

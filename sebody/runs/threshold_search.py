@@ -8,10 +8,10 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.engine.loop import advance
 from sebody.engine.scalars import numbers_of
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, State
 from sebody.engine.step_control import NEAR
+from sebody.runs.aid import advance
 from sebody.runs.simulation import Simulation
 from sebody.runs.thresholds import Threshold
 
@@ -45,13 +45,7 @@ class Search:
 
     def step(self) -> int:
         """Take one step; the code of the loop."""
-        return self._advance(1)
-
-    def _advance(self, steps: int) -> int:
-        run = self.run
-        code = advance(run.system, run.state, self.record, run.scheme, self.last, steps, run.dense)
-        run.aid.check()
-        return code
+        return advance(self.run, self.record, self.last, 1)
 
     def keep(self) -> None:
         """Remember the state reached."""
@@ -104,7 +98,7 @@ class Search:
 
     def solve(self) -> None:
         """Solve for the accelerations and multipliers of the state reached."""
-        self._advance(0)
+        advance(self.run, self.record, self.last, 0)
 
 
 def _arrays(state: State) -> list[NDArray]:

@@ -100,7 +100,7 @@ def test_the_loop_returns_several_times_a_second(monkeypatch, of_a_step):
     """Whatever a step takes; by a clock of our own, which only the loop moves on."""
     run, now, chunks = small(), 0.0, []
 
-    def advance(system, state, record, scheme, last, chunk, dense):
+    def advance(run, record, last, chunk):
         nonlocal now
         now += chunk * of_a_step
         chunks.append(chunk)

@@ -4,8 +4,16 @@ Of the fast way to compile alone. Importing this package puts in place what the 
 kernels call for lanes.
 """
 
-from sebody.engine.lanes import links, load_amplitudes, prediction, selection
+from sebody.engine.lanes import (
+    elements,
+    growth,
+    links,
+    load_amplitudes,
+    matrix,
+    prediction,
+    selection,
+)
 from sebody.kernels.lanes import blocks, frame_search, packed_products, products, rotations
 
-__all__ = ["blocks", "frame_search", "links", "load_amplitudes", "packed_products", "prediction",
-           "products", "rotations", "selection"]
+__all__ = ["blocks", "elements", "frame_search", "growth", "links", "load_amplitudes", "matrix",
+           "packed_products", "prediction", "products", "rotations", "selection"]

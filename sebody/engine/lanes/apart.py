@@ -17,15 +17,14 @@ from sebody.contract.counts import MEMBERS
 from sebody.engine.calls import call_advance
 from sebody.engine.growth import judge
 from sebody.engine.prediction import ROWS
-from sebody.engine.state import DONE, EVALUATED
+from sebody.engine.state import ANEW, DONE, EVALUATED, GROWS, NO_REASON
 from sebody.engine.step import back, cut_step
 from sebody.engine.step_control import NEAR
 from sebody.engine.work import take_back_work
 
 # of `control.reason` in lanes: what a member does. It runs in lanes; has given up, and is run alone
-# from its start; is alone; and why it leaves: its step is to be shorter, or to be made again with
-# new matrices, or its energy may have grown, or its loads jump
-RUNS, GAVE_UP, APART, CUT, AGAIN, JUDGED, JUMPS = map(float, range(7))
+# from its start; is alone; or it leaves for a reason of a single run, or because its loads jump
+RUNS, GAVE_UP, APART, JUMPS = float(NO_REASON), -2.0, -1.0, ANEW + 1.0
 _ANY = 2**62        # steps in one call
 
 
@@ -59,7 +58,7 @@ def take_apart(state, apart, J):
     control = state.control
     for member in range(MEMBERS):
         reason = number_of(control.reason, member)
-        if reason <= APART:
+        if reason <= RUNS:
             continue
         system, own = (group_at(apart.system, apart.addresses[member, 0]),
                        group_at(apart.state, apart.addresses[member, 1]))
@@ -67,7 +66,7 @@ def take_apart(state, apart, J):
         for k in range(J.shape[1]):
             own.J[k] = J[member, k]
         own.control.refreshed = 0
-        if reason == JUDGED:
+        if reason == GROWS:
             if not judge(system, own):
                 _give_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
                 control.reason = with_number(control.reason, member, RUNS)
@@ -75,8 +74,8 @@ def take_apart(state, apart, J):
         if reason != JUMPS:
             take_back_work(own)
             back(own)
-        if reason == CUT or reason == JUDGED:
-            cut_step(own)
+            if reason != ANEW:
+                cut_step(own)
         control.reason = with_number(control.reason, member, APART)
 
 

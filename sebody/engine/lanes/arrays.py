@@ -41,7 +41,6 @@ class Scratch(Arrays):
     ==================  ============================================================================
     frames              frames before an evaluation
     T                   tangent operators before accelerations are solved for
-    moved               (elements,) one where a member's element is evaluated, else zero
     unmoved             forces of the elements that have not moved
     table               of elements that are evaluated member by member: see `member_row`
     kept                (B,) numbers that an element of each batch keeps, if it is one of them
@@ -50,7 +49,6 @@ class Scratch(Arrays):
 
     frames: NDArray
     T: NDArray
-    moved: NDArray
     unmoved: NDArray
     table: NDArray
     kept: NDArray

@@ -1,21 +1,22 @@
 """The guard against growing energy, member by member: see `sebody.engine.growth`."""
 
-from sebody.compiler.decorators import compiled
+from sebody.compiler.decorators import in_lanes_of
 from sebody.compiler.inside.lanes import bits_of, some, where
 from sebody.contract.member_row import RUNNING
+from sebody.engine import growth
 from sebody.engine.growth import count_supplied, let_pass, look_at_energies
 from sebody.engine.vectors import copy
 
 
-@compiled
-def grows(system, state, scratch, running):
+@in_lanes_of(growth.grows)
+def grows(system, state, members, converged):
     """For which members energy seems to grow in the step: they are judged alone.
 
     Of them, and of the members that are not looked at, nothing changes but the count of works.
     """
-    guard, frames = state.guard, state.frames
-    count_supplied(state, running)
-    due = running & (guard.off == 0.0) & (guard.wait <= 0.0)
+    guard, frames, scratch = state.guard, state.frames, members[0]
+    count_supplied(state, converged)
+    due = converged & (guard.off == 0.0) & (guard.wait <= 0.0)
     if not some(due):
         return due
     copy(frames, scratch.frames)

@@ -11,18 +11,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import chosen_in, number_of, some, spread, where, with_number
+from sebody.compiler.decorators import compiled, in_lanes_of
+from sebody.compiler.inside.lanes import chosen_in, number_of, spread, with_number
 from sebody.contract.counts import MEMBERS
 from sebody.contract.layout import OK, TANGENT
+from sebody.engine import iteration, step
 from sebody.engine.arrays import Arrays
 from sebody.engine.calls import call_refactorize, call_refactorize_together
 from sebody.engine.evaluate import run_kernels, set_tangent_operators
-from sebody.engine.lanes.apart import CUT, GAVE_UP, RUNS
+from sebody.engine.lanes.apart import GAVE_UP
 from sebody.engine.lanes.together import EVALUATED as NEW_BODIES, MADE, WANTED
-from sebody.engine.newton import OLDEST_ROTATED
-from sebody.engine.state import EVALUATED, KEPT, RENEWED, ROTATED, State
-from sebody.engine.step import FIRST_RENEWED, set_coefficients
+from sebody.engine.newton import count_matrix
+from sebody.engine.selection import either
+from sebody.engine.state import EVALUATED, NO_REASON, NOT_FINITE, ROTATED, State
 from sebody.engine.system import System
 from sebody.engine.vectors import copy
 
@@ -49,77 +50,46 @@ class Alone(Arrays):
     J: NDArray
 
 
-@compiled
-def factorize(system, state, alone, together, begun, dense, wanted, evaluated):
-    """Make the matrices of some members; returns those that leave.
-
-    Parameters
-    ----------
-    begun : (9 b,)
-        Frames before the iterate was evaluated.
-    wanted, evaluated : mask
-        Members that want a matrix, and those among them whose bodies' matrices are to be new.
-    """
-    control, clock, zero = state.control, state.clock, spread(0.0)
-    control.regularized = system.regularized[0]
-    found = zero
+@in_lanes_of(iteration.make_matrix)
+def make_matrix(system, state, members, wanted, dense):
+    """Make the matrices of some members; returns why they have none, NO_REASON or GAVE_UP."""
+    scratch, alone, together = members
+    clock, found = state.clock, spread(0.0)
+    evaluated = wanted & (state.control.wanted == EVALUATED)
+    state.control.regularized = system.regularized[0]
+    count_matrix(state, wanted, evaluated)
     if together.routine[0] != 0:
-        found = _factorize_all(system, state, together, wanted, evaluated)
-    else:
-        for member in range(MEMBERS):
-            if chosen_in(wanted, member):
-                kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
-                why = _factorize_one(state, alone, begun, dense, member, kind, True)
-                found = with_number(found, member, why)
-                clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
-    failed = found != RUNS
-    _forget(state, evaluated)
-    control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
-    one = where(wanted, spread(1.0), zero)
-    control.secant = where(wanted, zero, control.secant)
-    control.fresh += one
-    control.matrices += one
-    control.reason = where(failed, found, control.reason)
-    return failed
+        return _factorize_all(system, state, together, wanted, evaluated)
+    for member in range(MEMBERS):
+        if chosen_in(wanted, member):
+            kind = EVALUATED if chosen_in(evaluated, member) else ROTATED
+            why = _factorize_one(state, alone, scratch.frames, dense, member, kind, True)
+            found = with_number(found, member, why)
+            clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
+    return found
+
+
+@in_lanes_of(step.evaluate_bodies)
+def evaluate_bodies(system, state, members, renewed):
+    """Make element matrices of bodies of some members; returns who has them."""
+    scratch, alone, together = members
+    if together.routine[0] != 0:
+        copy(state.frames, scratch.frames)      # which `Together.begun` are
+        _ask(together, renewed & ~renewed, renewed)
+        call_refactorize_together(together.routine[0], system, state, together)
+        return renewed
+    made = spread(0.0)
+    for member in range(MEMBERS):
+        if chosen_in(renewed, member) and _renew_one(state, alone, member):
+            made = with_number(made, member, 1.0)
+    return made > 0.0
 
 
 @compiled(forceinline=True)
-def _forget(state, evaluated):
-    """Reset what some members know of the convergence with old element matrices."""
-    clock, control, zero = state.clock, state.control, spread(0.0)
-    clock.factor_step = where(evaluated, spread(clock.current_step), clock.factor_step)
-    clock.baseline_contraction = where(evaluated, spread(0.5), clock.baseline_contraction)
-    clock.excess = where(evaluated, zero, clock.excess)
-    control.age = where(evaluated, zero, control.age)
-
-
-@compiled
-def renew_bodies(system, state, scratch, alone, together, scheme, running):
-    """Make new element matrices of members before their step: see `sebody.engine.step`."""
-    control, clock = state.control, state.clock
-    if system.first_joint[0] == 0 or system.regularized[0] == 1 or state.spare.size > 0:
-        return
-    aged = ((control.wanted == float(KEPT)) & (control.back_off_left > 0.0)
-            & (control.age >= float(OLDEST_ROTATED)))
-    renewed = (running & (clock.factor_step == spread(clock.current_step))
-               & (control.iteration > 0.0) & (control.steps >= float(FIRST_RENEWED))
-               & (aged | (control.wanted == float(EVALUATED))))
-    if not some(renewed):
-        return
-    set_coefficients(state, scheme, clock.current_step)
-    if together.routine[0] != 0:
-        asked, zero, one = together.asked, spread(0.0), spread(1.0)
-        copy(state.frames, scratch.frames)      # which `Together.begun` are
-        asked[WANTED], asked[NEW_BODIES] = zero, where(renewed, one, zero)
-        call_refactorize_together(together.routine[0], system, state, together)
-    else:
-        made = spread(0.0)
-        for member in range(MEMBERS):
-            if chosen_in(renewed, member) and _renew_one(state, alone, member):
-                made = with_number(made, member, 1.0)
-        renewed = made > 0.0
-    _forget(state, renewed)
-    control.wanted = where(renewed, spread(float(RENEWED)), control.wanted)
+def _ask(together, wanted, evaluated):
+    """Note who wants a matrix, and whose bodies' matrices are to be new."""
+    together.asked[WANTED] = either(wanted, 1.0, 0.0)
+    together.asked[NEW_BODIES] = either(evaluated, 1.0, 0.0)
 
 
 @compiled
@@ -142,15 +112,14 @@ def _renew_one(state, alone, member):
 
 @compiled(forceinline=True)
 def _factorize_all(system, state, together, wanted, evaluated):
-    """Make the matrices of all members; returns whether each goes on, or why it leaves."""
-    asked, zero, one = together.asked, spread(0.0), spread(1.0)
-    asked[WANTED], asked[NEW_BODIES] = where(wanted, one, zero), where(evaluated, one, zero)
+    """Make the matrices of all members; returns why they have none, NO_REASON or GAVE_UP."""
+    _ask(together, wanted, evaluated)
     call_refactorize_together(together.routine[0], system, state, together)
-    size = zero
+    size = spread(0.0)
     for i in range(state.residual.size):
         size = size + abs(state.residual[i])
-    small = where(size < math.inf, spread(GAVE_UP), spread(CUT))
-    return where(wanted & (asked[MADE] == 0.0), small, spread(RUNS))
+    small = either(size < math.inf, GAVE_UP, NOT_FINITE)
+    return either(wanted & (together.asked[MADE] == 0.0), small, NO_REASON)
 
 
 @compiled
@@ -162,7 +131,7 @@ def factorize_masses(state, alone, begun, dense, wanted):
     clock, made = state.clock, spread(0.0)
     for member in range(MEMBERS):
         if chosen_in(wanted, member):
-            if _factorize_one(state, alone, begun, dense, member, EVALUATED, False) == RUNS:
+            if _factorize_one(state, alone, begun, dense, member, EVALUATED, False) == NO_REASON:
                 made = with_number(made, member, 1.0)
             clock.floor = with_number(clock.floor, member, alone.state.clock.floor)
     return made > 0.0
@@ -170,7 +139,7 @@ def factorize_masses(state, alone, begun, dense, wanted):
 
 @compiled
 def _factorize_one(state, alone, begun, dense, member, wanted, of_step):
-    """Make the matrix of a member; returns whether it goes on, or why it leaves.
+    """Make the matrix of a member; returns why it has none, NO_REASON or GAVE_UP.
 
     It gives up where a run alone needs row exchanges.
     """
@@ -190,16 +159,16 @@ def _factorize_one(state, alone, begun, dense, member, wanted, of_step):
         for k in range(kept):
             one.J[k] = alone.J[member, k]
     if run_kernels(TANGENT, first, system.address.size, system, one) != OK:
-        return CUT
+        return NOT_FINITE
     if wanted == EVALUATED and of_step:
         for k in range(kept):
             alone.J[member, k] = one.J[k]
     made = call_refactorize(system.routines[0], system, one, wanted, dense)
     if not made:
-        return CUT
+        return NOT_FINITE
     if ((not dense and one.control.pivoted == 1)
             or one.control.regularized != state.control.regularized):
         return GAVE_UP
     for k in range(alone.returned.size):
         numbers[alone.returned[k], member] = floats[alone.returned[k]]
-    return RUNS
+    return NO_REASON

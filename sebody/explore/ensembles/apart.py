@@ -43,13 +43,9 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
     state = offsets.packed(one, numbers[0])
     numbers[1:] = numbers[0]
     scalars = {name: np.tile(numbers_of(getattr(one, name)), (MEMBERS, 1)) for name in RECORDS}
-    flags = {own.name: np.array([value] * MEMBERS) for own in fields(State)
-             if isinstance(value := getattr(one, own.name), np.ndarray)
-             and value.dtype != np.float64}
-    state = replace(state, **{name: rows[0] for name, rows in flags.items()},
-                    **{name: record(getattr(one, name).dtype, rows[0])
-                       for name, rows in scalars.items()})
-    rows = [numbers, *scalars.values(), *flags.values()]
+    state = replace(state, **{name: record(getattr(one, name).dtype, rows[0])
+                              for name, rows in scalars.items()})
+    rows = [numbers, *scalars.values()]
     words = [group.in_rows(rows) for group in (system, state)]
     unwritten = Record.of(one, 0, NEVER)
     return Apart(
@@ -68,7 +64,7 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
 def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:
     """Places of what a member takes with it: parameters, and its state without scratch memory."""
     left = SHARED | {"J", "condensed", "g", "changes", "kept", "work", "expansion",
-                     "rotated_matrix", "column"}
+                     "rotated_matrix", "column", "moved"}
     parts = [offsets.of(value) for one in fields(State) if one.name not in left
              and isinstance(value := getattr(state, one.name), np.ndarray)
              and value.dtype == np.float64 and value.size]

@@ -28,7 +28,7 @@ class Beginning(Arrays):
     components, slopes  by which component of the parameters, and how much
     kept                places of what elements keep, as of the last accepted state
     control, clock,     scalars and flags of the thread, and below those of the model as built
-    guard, moved
+    guard
     ==================  ============================================================================
     """
 
@@ -44,11 +44,9 @@ class Beginning(Arrays):
     control: NDArray
     clock: NDArray
     guard: NDArray
-    moved: NDArray
     control_built: NDArray
     clock_built: NDArray
     guard_built: NDArray
-    moved_built: NDArray
 
 
 @compiled(nogil=True)
@@ -70,8 +68,6 @@ def begin(system, state, given, change):
         given.floats[given.slots[i]] = given.model[given.slots[i]] + total
     for i in range(given.control.size):
         given.control[i] = given.control_built[i]
-    for i in range(given.moved.size):
-        given.moved[i] = given.moved_built[i]
     copy(given.clock_built, given.clock)
     copy(given.guard_built, given.guard)
     if state.spare.size > 0:

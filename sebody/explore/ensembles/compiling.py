@@ -70,7 +70,7 @@ def compile_groups() -> None:
     """The same of what makes groups from start to end."""
     given_to_loop, one = _given_to_loop(), smallest()[1]
     floats, places, pairs = np.zeros(1), np.zeros(1, dtype=np.int64), np.zeros((1, 2), np.int64)
-    scalars = {name: numbers_of(getattr(one, name)) for name in RECORDS} | {"moved": one.moved}
+    scalars = {name: numbers_of(getattr(one, name)) for name in RECORDS}
     given = Beginning(model=floats, floats=floats, copied=pairs, restart=places, slots=places,
                       ends=places, components=places, slopes=floats, kept=places, **scalars,
                       **{f"{name}_built": own for name, own in scalars.items()})
@@ -88,7 +88,7 @@ def _given_to_loop() -> tuple:
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
     room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
-    scratch = Scratch(*(empty(1) for _ in range(4)), places, places)
+    scratch = Scratch(*(empty(1) for _ in range(3)), places, places)
     alone = Alone(system, state, room[0], room, places, places, room)
     columns = Columns(places, empty(1, 1), places, np.zeros((0, 2), dtype=np.int64),
                       np.zeros((0, 3), dtype=np.int64), places, places, empty(1))

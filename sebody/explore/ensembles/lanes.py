@@ -105,7 +105,7 @@ class Lanes:
         system = _with_kernels(system, image, shared, rows)
         state = in_lanes(one.state, image.offsets, buffer)
         scratch = Scratch(frames=empty(one.state.frames.size), T=empty(one.state.T.size),
-                          moved=empty(one.state.moved.size), unmoved=empty(one.state.g.size),
+                          unmoved=empty(one.state.g.size),
                           table=table, kept=rows.kept)
         own = np.concatenate([image.lines.slots.astype(np.int64), carried(image)])
         apart, runs_apart = new_apart(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.contract.layout import RECORD_T
-from sebody.engine.loop import advance, lead
+from sebody.engine.loop import lead
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import (
@@ -28,7 +28,7 @@ from sebody.explore.ensembles.start_values import Image
 from sebody.results.naming import look_up
 from sebody.results.recording import Recording
 from sebody.runs import user_faults
-from sebody.runs.aid import Aid
+from sebody.runs.aid import Aid, advance
 from sebody.runs.outputs import Fold, Form, Output
 from sebody.runs.sampling import Sampling
 from sebody.runs.simulation import Simulation
@@ -77,9 +77,9 @@ class Copies:
         """
         system, state = self.system, self.state
         beginning.begin(system, state, self.given, change)
-        code = self._advance_start()
-        if code == DONE and self.sampling.begin():
-            code = self._advance_start()
+        code = advance(self, self.none, 0, 0)
+        if code == DONE and self.sampling.begin():      # after its samples
+            code = advance(self, self.none, 0, 0)
         if code == FAILED and system.regularized[0]:
             return False        # where constraints contradict each other, and Python can tell which
         if code == FAILED:
@@ -92,12 +92,6 @@ class Copies:
     def starts_in_python(self) -> bool:
         """Tell whether starts have Python between them: for row exchanges, or for samples."""
         return bool(self.system.massless[0]) or bool(self.sampling.samples)
-
-    def _advance_start(self) -> int:
-        """Solve for the accelerations of a start, after its samples."""
-        code = advance(self.system, self.state, self.none, self.scheme, 0, 0, self.dense)
-        self.aid.check()
-        return code
 
     def begin_together(self, changes: NDArray, places: NDArray, lanes: NDArray) -> NDArray:
         """Begin some runs, those that have begun in lanes; returns which these are.
@@ -150,7 +144,6 @@ class Copies:
         """Beginning of runs; scalars and flags are not in `floats`."""
         lines, state = self.image.lines, self.state
         whole = {name: numbers_of(getattr(state, name)) for name in ("control", "clock", "guard")}
-        whole["moved"] = state.moved
         return beginning.Beginning(
             model=self.image.floats, floats=self.floats, copied=self._copied(),
             restart=np.array([FACTORS_KEPT if self.image.factored else ASKED]),
@@ -224,11 +217,10 @@ class Course:
         return code in (DONE, FAILED)
 
     def _advance(self, record: Record, last: int, stop: Stop) -> int:
-        run, state, chunk = self.run, self.run.state, 1000
+        chunk = 1000
         while True:
             began = time.perf_counter()
-            code = advance(run.system, state, record, run.scheme, last, chunk, run.dense)
-            run.aid.check()
+            code = advance(self.run, record, last, chunk)
             if code in (DONE, FAILED) or stop():
                 return code
             chunk = max(1, int(chunk * min(8.0, CHUNK / max(time.perf_counter() - began, 1e-9))))
