@@ -30,6 +30,7 @@ CONSTANTS = (
     Part("ratio", (), "first coordinate over the second"),
     Part("e1", (2,), "axis of the way, in axes of its first body"),
     Part("start1", (), "way at the start [length]"),
+    Part("rest2", (), "angle that counts as none [rad]"),
 )
 MULTIPLIERS = 1
 VECTOR = False        # the equations are components of one vector
@@ -41,7 +42,7 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (27, 0, 0, 0),
+OPERATIONS = {"residual": (28, 0, 0, 0),
               "column": (43, 0, 0, 0)}
 
 
@@ -58,6 +59,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         e1_x = constant[1]
         e1_y = constant[2]
         start1 = constant[3]
+        rest2 = constant[4]
         xa_x = q[unknowns[0]]
         xa_y = q[unknowns[1]]
         va_x = v[unknowns[0]]
@@ -94,7 +96,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[4] = lam_1*(t0*t3 + t2*t4)
         g[5] = -t5
         g[6] = t5
-        g[7] = -ratio*(thc - thd) - start1 + t0*t4 + t1*t3
+        g[7] = -ratio*(-rest2 + thc - thd) - start1 + t0*t4 + t1*t3
         if task == VELOCITY:
             t900 = Ra_cos*e1_y
             t901 = Ra_sin*e1_x

@@ -25,6 +25,8 @@ N_ROTATIONS = 0
 ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = (
     Part("ratio", (), "first coordinate over the second"),
+    Part("rest1", (), "angle that counts as none [rad]"),
+    Part("rest2", (), "angle that counts as none [rad]"),
 )
 MULTIPLIERS = 1
 VECTOR = False        # the equations are components of one vector
@@ -36,7 +38,7 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 2
-OPERATIONS = {"residual": (7, 0, 0, 0),
+OPERATIONS = {"residual": (9, 0, 0, 0),
               "column": (5, 0, 0, 0)}
 
 
@@ -50,6 +52,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         constant = at(constants, index[first + AT_CONSTANTS])
         g = at(forces, element*WIDTH)
         ratio = constant[0]
+        rest1 = constant[1]
+        rest2 = constant[2]
         tha = q[unknowns[0]]
         Oma_z = v[unknowns[0]]
         Aa_z = a[unknowns[0]]
@@ -68,7 +72,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g[1] = -lam_1
         g[2] = -t0
         g[3] = t0
-        g[4] = -ratio*(thc - thd) + tha - thb
+        g[4] = -ratio*(-rest2 + thc - thd) - rest1 + tha - thb
         if task == VELOCITY:
             g[4] = Oma_z - Omb_z - ratio*(Omc_z - Omd_z)
         if task == ACCELERATION:

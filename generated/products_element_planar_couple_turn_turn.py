@@ -17,6 +17,8 @@ N_ROTATIONS = 0
 ROTATIONS = 0      # first rotation among the local coordinates
 CONSTANTS = (
     Part("ratio", (), "first coordinate over the second"),
+    Part("rest1", (), "angle that counts as none [rad]"),
+    Part("rest2", (), "angle that counts as none [rad]"),
 )
 MULTIPLIERS = 1
 VECTOR = False        # the equations are components of one vector
@@ -28,7 +30,7 @@ INERTIAL = False        # has kinetic energy
 POWER = False        # does work on the system: a load, damper or drive
 DRIVEN = False        # a constraint that depends on time
 WORK_ROWS = 0
-OPERATIONS = {"residual": (7, 0, 0, 0),
+OPERATIONS = {"residual": (9, 0, 0, 0),
               "column": (8, 0, 0, 0)}
 KEPT = 0      # numbers kept between two calls
 
@@ -44,6 +46,8 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
         g = at(forces, element*WIDTH)
         vectors = at(matrices, 4*element*WIDTH)
         ratio = constant[0]
+        rest1 = constant[1]
+        rest2 = constant[2]
         tha = q[unknowns[0]]
         thb = q[unknowns[1]]
         thc = q[unknowns[2]]
@@ -55,7 +59,7 @@ def kernel(task, count, stride, width, index, constants, q, R, v, a, references,
             g[1] = -lam_1
             g[2] = -t0
             g[3] = t0
-            g[4] = -ratio*(thc - thd) + tha - thb
+            g[4] = -ratio*(-rest2 + thc - thd) - rest1 + tha - thb
         if task == ALONG:
             t0 = vectors[9]*ratio
             vectors[0] = vectors[9]

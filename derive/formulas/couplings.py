@@ -55,7 +55,8 @@ def _angle(space: Space, blocks: list[Block], k: int) -> tuple[sp.Expr, list[Con
     """Angle of the first block against the second, zero at the start."""
     a, b = blocks
     if space.planar:
-        return a.angle - b.angle, []
+        rest = constant(space, f"rest{k}", "scalar", "angle that counts as none [rad]")
+        return a.angle - b.angle - rest.symbols[0], [rest]
     vectors = turn_vectors(space, str(k))
     d, n, m = (one.symbols for one in vectors)
     seen = b.state.symbols.T * a.state.symbols * d

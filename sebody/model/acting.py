@@ -31,7 +31,8 @@ class Acting(TypedDict, total=False):
     from_ : float
         Time from which it acts [time]. Before `until` it acts between the two times; after
         `until` it acts from the start, lets go, and acts again. A `weld` or `distance` locks the
-        pose that its nodes have then; other joints keep their geometry, which must be met.
+        pose that its nodes have then, and a coupling counts from there; other joints keep their
+        geometry, which must be met.
     """
 
     breaks_at: float | Mapping[str, float]

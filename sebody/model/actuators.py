@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, dof_block, known, rotation_vector, vector
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
@@ -23,7 +26,7 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
              direction: ArrayLike | None = None, what: str | None = None,
              limit: float | tuple[float, float] | None = None, rate: float | None = None,
              lag: float = 0.0, inertia: float = 0.0, ratio: float = 1.0,
-             start: float = 0.0) -> Element:
+             start: float = 0.0, **acting: Unpack[Acting]) -> Element:
     """Force or torque that a controller sets, or `Simulation.set_input`.
 
     It acts along the motion of a joint, on `node` of the joint and opposite on the other one; along
@@ -55,6 +58,9 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
         `ratio` times as much acts.
     start : float
         Value until something is set [force] or [force length].
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`. What does
+        not act has no force; its signal and rotor stay.
 
     Raises
     ------

@@ -1,11 +1,12 @@
 """Builders that change a model wholly or not at all."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
 from copy import copy
 from functools import wraps
 from inspect import isfunction, signature
 from typing import ParamSpec, TypeVar, cast
 
+from sebody.basics.errors import InputError
 from sebody.basics.spelling import refuse_arguments
 from sebody.model.acting import ACTING
 from sebody.model.mechanism import Mechanism
@@ -15,6 +16,11 @@ from sebody.model.switching import note
 Arguments = ParamSpec("Arguments")
 Built = TypeVar("Built")
 Class = TypeVar("Class", bound=type)
+
+_INSTEAD = {     # of builders without equations: what has times
+    "move": "give drive_slide or drive_angle, which have times, for the motion against the ground",
+    "drive_way": "give the path_joint the times, or an actuator or a spring in place of the drive",
+    "fix": "give weld(node) with its times, which holds the node at the ground"}
 
 
 def atomic_builders(model: Class) -> Class:
@@ -51,6 +57,15 @@ def atomic(build: Callable[Arguments, Built]) -> Callable[Arguments, Built]:
         except BaseException as error:
             vars(model).update(kept)
             if isinstance(error, TypeError):
+                _refuse_times(build, named, own)
                 refuse_arguments(build, named, 1, ACTING if "acting" in own else ())
             raise
     return built
+
+
+def _refuse_times(build: Callable, named: Mapping[str, object], own: Collection[str]) -> None:
+    """Refuse times of what is held without an equation, and so cannot let go."""
+    times = [name for name in named if name in ACTING]
+    if times and "acting" not in own and build.__name__ in _INSTEAD:
+        raise InputError(f"{build.__name__} has no {times[0]}=: it holds without an equation, so "
+                         f"nothing can let go; {_INSTEAD[build.__name__]}")

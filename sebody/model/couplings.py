@@ -48,8 +48,8 @@ def couple(model: Mechanism, first: Joint | str, second: Joint | str, ratio: flo
     name : str, optional
         By default ``coupling of <first> and <second>``.
     **acting
-        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
-        coupling has no `from_`.
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`. A coupling
+        that locks counts both coordinates from there.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def couple(model: Mechanism, first: Joint | str, second: Joint | str, ratio: flo
     ratio = _not_zero(ratio, f"{what}: ratio", "the first coordinate for one of the second")
     if one.turns and not other.turns:
         one, other, ratio = other, one, 1.0 / ratio
-    return _coupled(model, what, one, other, ratio, name, acting)
+    return _coupled(model, what, one, other, ratio, name)
 
 
 def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None = None,
@@ -88,8 +88,8 @@ def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None =
     name : str, optional
         By default ``screw in <joint>``.
     **acting
-        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
-        coupling has no `from_`.
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`. A coupling
+        that locks counts both coordinates from there.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def screw(model: Mechanism, joint: Joint | str, pitch: float, name: str | None =
     what = f"screw in {found.name}"
     lead = _not_zero(pitch, f"{what}: pitch", "the way of one turn") / (2.0 * np.pi)
     return _coupled(model, what, _Coordinate(found, "displacement"), _Coordinate(found, "angle"),
-                    lead, name, acting)
+                    lead, name)
 
 
 def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float,
@@ -130,8 +130,8 @@ def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float
     name : str, optional
         By default ``rack <rack> on <pinion>``.
     **acting
-        `until`, `breaks_at`, `release_when`: when it lets go, see `sebody.model.acting.Acting`; a
-        coupling has no `from_`.
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`. A coupling
+        that locks counts both coordinates from there.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def rack(model: Mechanism, rack: Joint | str, pinion: Joint | str, radius: float
         found.append(_Coordinate(joint, coordinate))
     what = f"rack {found[0].joint.name} on {found[1].joint.name}"
     radius = _not_zero(radius, f"{what}: radius", "that of the pinion")
-    return _coupled(model, what, found[0], found[1], radius, name, acting)
+    return _coupled(model, what, found[0], found[1], radius, name)
 
 
 class _Coordinate(NamedTuple):
@@ -180,7 +180,7 @@ class _Coordinate(NamedTuple):
         """Constants of its kernel."""
         if not self.turns:
             return {"e": self.joint.way.direction, "start": self.joint.way.start}
-        return {} if planar else turning(self.joint.own_axes)
+        return {"rest": 0.0} if planar else turning(self.joint.own_axes)
 
     def __str__(self) -> str:
         return f"{self.joint.name}.{self.name}"
@@ -208,12 +208,8 @@ def _coordinate(model: Mechanism, given: Joint | str) -> _Coordinate:
 
 
 def _coupled(model: Mechanism, what: str, first: _Coordinate, second: _Coordinate, ratio: float,
-             name: str | None, acting: Acting) -> Joint:
+             name: str | None) -> Joint:
     """Add the equation ``first - ratio second = 0``."""
-    if "from_" in acting:
-        raise InputError(f"{what} has from_=, but its coordinates count from the start, so it "
-                         "would have to fit by chance: leave it out; weld(..., from_=) locks any "
-                         "pose")
     for one in (first, second):
         if one.joint.name in model.switches:
             raise InputError(f"{what}: {one.joint.name!r} acts "

@@ -105,7 +105,8 @@ def torque(model: Mechanism, node: Node | str, direction: ArrayLike,
 
 def mode_force(model: Mechanism, body: str, mode: int, factor: float,
                amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-               name: str | None = None) -> Element:
+               name: str | None = None,
+               **acting: Unpack[Acting]) -> Element:
     """Force on an internal mode of a superelement: `factor` times a time function.
 
     Parameters
@@ -120,6 +121,8 @@ def mode_force(model: Mechanism, body: str, mode: int, factor: float,
         Over time; 1 by default.
     name : str, optional
         By default ``force on mode <mode> of <body>``.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -178,7 +181,8 @@ def body_load(model: Mechanism, body: str, load: str,
 
 
 def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
-               function: Callable[..., None], corners: Sequence[float] = ()) -> Element:
+               function: Callable[..., None], corners: Sequence[float] = (),
+               **acting: Unpack[Acting]) -> Element:
     """Forces by a function of the user, compiled for the loop.
 
     Parameters
@@ -190,6 +194,8 @@ def user_force(model: Mechanism, name: str, nodes: Iterable[Node | str],
         `force`, which is zero before. Numba compiles it; derivatives are central differences.
     corners : sequence of float
         Times at which the forces jump [time]: steps end there.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------

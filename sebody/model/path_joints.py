@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.contract.names import path_kind, path_turn_kind
 from sebody.model import motions
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, dof_block, known, known_joint
 from sebody.model.extent import extent
 from sebody.model.frames import FRAMES
@@ -41,7 +43,7 @@ SAMPLES = 8         # places in each interval between knots from which the neare
 
 def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str | None = None,
                start: float | None = None, rate: float | None = None, inertia: float = 0.0,
-               name: str | None = None) -> Joint:
+               name: str | None = None, **acting: Unpack[Acting]) -> Joint:
     """Point that stays on a path: `node` slides along flexible bodies, and turns freely or not.
 
     How far along the path it is, its way, is an unknown of its own, so the force on `node` is
@@ -70,6 +72,9 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
     name : str, optional
         Of its results, ``<name>.way``, ``<name>.rate``, ``<name>.force`` on the node and the like;
         by default ``path at <node>``.
+    **acting
+        `until`, `breaks_at`, `release_when`: when it lets go, and with it what acts along its way,
+        see `sebody.model.acting.Acting`; it has no `from_`.
 
     Raises
     ------
@@ -85,6 +90,9 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
     what = f"path joint at {a.name!r}"
     on = known_path(model, path, what)
     dof_block(a, "position")
+    if "from_" in acting:
+        raise InputError(f"{what} has from_=, but the node would have to be on the path by chance: "
+                         "leave it out; weld(..., from_=) locks any pose")
     for piece in on.pieces:
         if isinstance(piece.carrier, Node):
             if a is piece.carrier or a.position is piece.carrier.position:

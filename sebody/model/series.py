@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
+from typing import Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +16,7 @@ from sebody.contract.names import body_load_kind
 from sebody.fem.loads import line_load
 from sebody.fem.model import FEModel
 from sebody.io.load_series import LoadSeries
+from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, vector
 from sebody.model.beams import course_of, part_models
 from sebody.model.frames import FRAMES
@@ -29,7 +31,8 @@ AXES = "xyz"
 
 def body_series(model: Mechanism, body: str, series: LoadSeries,
                 amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-                columns: Mapping[str, str] | None = None, name: str | None = None) -> Element:
+                columns: Mapping[str, str] | None = None, name: str | None = None,
+                **acting: Unpack[Acting]) -> Element:
     """A series of loads on the coordinates of a superelement: one element for all columns.
 
     What a column acts on is its name: a position ``NODE.x``, a rotation ``NODE.rx`` (a moment), an
@@ -47,6 +50,8 @@ def body_series(model: Mechanism, body: str, series: LoadSeries,
         Time function that the series is multiplied by.
     columns : mapping of str to str, optional
         What columns act on, by their names, where these do not say it.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Raises
     ------
@@ -74,7 +79,7 @@ def body_series(model: Mechanism, body: str, series: LoadSeries,
 def beam_series(model: Mechanism, beam: str, series: LoadSeries, stations: ArrayLike,
                 direction: ArrayLike,
                 amplitude: ArrayLike | Callable[[float], float] | TimeFunction | None = None,
-                name: str | None = None) -> list[Element]:
+                name: str | None = None, **acting: Unpack[Acting]) -> list[Element]:
     """A force by length along a beam, whose values at some stations are a series.
 
     Between stations the force by length is linear, beyond the first and last one it is none; within
@@ -93,6 +98,8 @@ def beam_series(model: Mechanism, beam: str, series: LoadSeries, stations: Array
         Direction of the force at the start, in global axes.
     amplitude
         As of `body_series`.
+    **acting
+        `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`.
 
     Returns
     -------

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.model.model import Model
-from sebody.model.parts import Element, Joint, Node
+from sebody.model.parts import COUPLING, Element, Joint, Node
 from sebody.model.time_functions import TimeFunction
 from sebody.results.histories import histories
 from sebody.results.recording import Recording
@@ -41,9 +41,24 @@ def phase_of(model: Model, acts: set[str], locked: Mapping[str, Joint]) -> Model
     gone = model.switches.keys() - acts
     phase.joints = [locked.get(one.name, one) for one in model.joints if one.name not in gone]
     joints = {one.name: one for one in phase.joints}
-    phase.loads = [_pressed(one, joints) for one in model.loads if one.name not in gone and (
-        one.pressed_by is None or one.pressed_by.name not in gone)]
+    ways = {one.way for joint in model.joints if joint.name in gone for one in joint.constraints}
+    phase.loads = []
+    for load in model.loads:
+        if load.pressed_by is not None and load.pressed_by.name in gone or any(
+                place.dof_block in ways for place in load.attachments):
+            continue        # friction and springs in a joint go with it
+        if load.name not in gone:
+            phase.loads.append(_pressed(load, joints))
+        elif load.time_function is not None and load.time_function.is_input:
+            phase.loads.append(_idle(load))     # whose signal controllers go on to give
     return phase
+
+
+def _idle(actuator: Element) -> Element:
+    """An actuator without force."""
+    name = "gain" if "gain" in actuator.constants else "d"
+    return replace(actuator, constants={**actuator.constants,
+                                        name: 0.0 * np.asarray(actuator.constants[name])})
 
 
 def whole(model: Model) -> Model:
@@ -52,11 +67,16 @@ def whole(model: Model) -> Model:
 
 
 def locked_as_now(joint: Joint, now: Recording) -> Joint:
-    """A weld or distance that keeps the pose its nodes have in a state; others as they are.
+    """A weld, distance or coupling that holds the pose in a state; other joints as they are.
+
+    Coordinates of a coupling count from the state.
 
     A weld keeps the place of `node` in axes of `to` and ``C = R^T R'``, the rotation of `to` in
     axes of `node`: a direction ``C n`` of `node` stays where the direction n of `to` is.
     """
+    if joint.kind == COUPLING:
+        (one,) = joint.constraints
+        return replace(joint, constraints=(_counted_from(one, now),))
     if joint.kind not in ("weld", "distance"):
         return joint
     return replace(joint, constraints=tuple(_as_now(one, now) for one in joint.constraints))
@@ -77,6 +97,31 @@ def _as_now(one: Element, now: Recording) -> Element:
     turned = {name: R.T @ S @ one.vector(name) for name in one.constants if name != "e" or
               kind not in ("parallel", "perpendicular")}
     return replace(one, constants={**one.constants, **turned})
+
+
+def _counted_from(one: Element, now: Recording) -> Element:
+    """A coupling whose angles and displacements are 0 in a state."""
+    constants = dict(one.constants)
+    kinds = one.kind.removeprefix("planar_").split("_")[1:]
+    places = [place.node for place in one.attachments if place.kind == "position"]
+    turning = [place.node for place in one.attachments if place.kind == "rotation"]
+    for k, kind in enumerate(kinds, 1):
+        if kind == "slide":
+            (x, R), (y, _) = (_place(places.pop(0), now) for _ in range(2))
+            turning.pop(0)
+            constants[f"start{k}"] = float((R @ one.vector(f"e{k}")) @ (y - x))
+            continue
+        a, b = turning.pop(0), turning.pop(0)
+        if f"rest{k}" in constants:
+            constants[f"rest{k}"] = _angle(a, now) - _angle(b, now)
+            continue
+        # the direction of b that the one of a has now; both are normal to the axis
+        seen = _place(b, now)[1].T @ _place(a, now)[1] @ one.vector(f"d{k}")
+        n, m = one.vector(f"n{k}"), one.vector(f"m{k}")
+        angle = np.arctan2(m @ seen, n @ seen)
+        constants[f"n{k}"] = np.cos(angle) * n + np.sin(angle) * m
+        constants[f"m{k}"] = np.cos(angle) * m - np.sin(angle) * n
+    return replace(one, constants=constants)
 
 
 def _place(node: Node, now: Recording) -> tuple[NDArray, NDArray]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+import numpy as np
 from numpy.typing import NDArray
 
 from sebody.assembly.build import build
@@ -173,12 +174,17 @@ class PhasedSimulation:
     def read(self, name: str) -> float | NDArray:
         """A quantity in the state reached, see `Simulation.read`.
 
-        Raises
-        ------
-        InputError
-            A name that nothing has that acts at this time.
+        Of what does not act it is zero, as in results; its work is that which it has done.
         """
-        return self.phases[-1].read(name)
+        owner = name.rpartition(".")[0]
+        idle = self.model.switches.keys() - self._acting
+        if not any(owner == one or owner.startswith(f"{one}.") for one in idle):
+            return self.phases[-1].read(name)
+        value = self.result()[name][-1]
+        if name.endswith(".work"):      # that of all phases, not only up to the last row
+            works = [(phase.numbering.port_names, phase.state.works) for phase in self.phases]
+            return float(sum(done[ports.index(owner)] for ports, done in works if owner in ports))
+        return np.zeros_like(value) if np.ndim(value) else 0.0
 
     def result(self) -> Result:
         """The results computed so far, in the numbering of the whole model."""

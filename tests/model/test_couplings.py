@@ -6,7 +6,7 @@ from differentiated import differences
 from lane_models import assert_bits_in_other_company, single
 from scipy.spatial.transform import Rotation
 
-from sebody import InputError, Model, Simulation, generalized_alpha, simulate
+from sebody import InputError, Model, Simulation, Tolerance, generalized_alpha, simulate
 from sebody.analysis import Ensemble, final, gradient, resume, save_state, vibrations
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
@@ -275,10 +275,66 @@ def test_a_coupling_lets_go(how, when):
     assert result.energy_balance() < 1e-4
 
 
+def wheels_and_rack(flat, locks):
+    """A free wheel, a second one and a rack, which couplings catch; all of them move before."""
+    model = Model(planar=flat)
+    turn, axis = (np.eye(2), ()) if flat else (TURN, (Z,))
+    for name, point, inertia, speed in (("one", (0.1, 0.2), 0.5, 9.0),
+                                        ("two", (1.0, 0.5), 0.8, 2.0),
+                                        ("rack", (0.2, 0.9), 0.3, None)):
+        node = model.node(name, turn @ (point if flat else (*point, 0.3)))
+        if speed is not None:
+            model.initial_velocity(node, angular=speed if flat else speed * Z)
+        else:
+            model.initial_velocity(node, turn[:, 0] * -1.3)
+        model.rigid_body(f"{name} body", node, MASS, inertia if flat else inertia * np.eye(3))
+        if speed is None:
+            model.prismatic(node, turn[:, 0], name="guide")
+        else:
+            model.revolute(node, *axis, name=f"axle {name}")
+    model.couple("axle one", "axle two", -2.5, name="mesh", **locks)
+    model.rack("guide", "axle two", 0.3, name="teeth", **locks)
+    return model
+
+
+@pytest.mark.parametrize("flat", [True, False])
+@pytest.mark.parametrize("tolerance", [None, Tolerance(1e-6)])
+@pytest.mark.parametrize("locks", [{"from_": 0.703}, {"until": 0.2, "from_": 0.703}])
+def test_couplings_lock(flat, tolerance, locks):
+    """Wherever the coordinates are then, after several radians: a plastic impact, and momentum.
+
+    With the speed w of the second wheel ``w (J_2 + ratio^2 J_1 + m r^2)`` is the sum of the momenta
+    times their ratios.
+    """
+    if "until" in locks:        # coupled at first, so with speeds that fit
+        model = wheels_and_rack(flat, locks)
+        for name, speed in (("one", -5.0), ("two", 2.0)):
+            model.initial_velocity(name, angular=speed if flat else speed * Z)
+        model.initial_velocity("rack", (np.eye(2) if flat else TURN)[:, 0] * 0.6)
+        model.torque("one", 3.0 if flat else 3.0 * Z, [(0.2, 0.0), (0.2, 1.0), (0.6, 1.0),
+                                                       (0.6, 0.0)], name="push")
+    else:
+        model = wheels_and_rack(flat, locks)
+    scheme = generalized_alpha(tolerance=1e-12, index=2 if tolerance else 3)
+    result = simulate(model, 0.01, 1.0, scheme, tolerance=tolerance)
+    t, after = result.t, result.t > 0.703
+    names = "axle one", "axle two", "guide"
+    rates = [result[f"{name}.{'speed' if name == 'guide' else 'rate'}"] for name in names]
+    free = (t < 0.703) & (t > 0.6)
+    before = [rate[free][-1] for rate in rates]
+    weights = np.array([-2.5, 1.0, 0.3])
+    inertias = np.array([0.5, 0.8, MASS])
+    speed = weights @ (inertias * before) / (weights**2 @ inertias)
+    for rate, weight in zip(rates, weights, strict=True):
+        np.testing.assert_allclose(rate[after], weight * speed, atol=2e-9)
+    event = result.events[-1]
+    assert event.time == pytest.approx(0.703, abs=1e-12) and "locked" in event.what
+    lost = inertias @ np.square(before) / 2 - weights**2 @ inertias * speed**2 / 2
+    assert event.lost == pytest.approx(lost, rel=1e-8) and result.energy_balance() < 1e-8
+
+
 def test_what_couplings_refuse_of_when_they_act():
     model = gears()
-    with pytest.raises(InputError, match="coupling of .* has from_=.*leave it out.*weld"):
-        model.couple("axle one", "axle two", 2.0, from_=0.3)
     model.cylindrical(body(model, "nut", (0.0, 0.0, 0.7)), Z, name="spindle", until=0.2)
     with pytest.raises(InputError, match="screw in spindle: 'spindle' acts until t = 0.2.*until="):
         model.screw("spindle", 0.1)

@@ -183,6 +183,7 @@ def _coupling(flat: Flattening, joint: Joint, one: Element) -> Element:
                           "start" + k: one.number("start" + k)}
         else:
             ratio *= sign_of_angle(flat, one, k)
+            constants["rest" + k] = 0.0
     return _equation(flat, one, f"planar_{one.kind}", 1, constants | {"ratio": ratio})
 
 
