@@ -40,8 +40,9 @@ def length(vector: Sequence[sp.Expr]) -> sp.Expr:
     return sp.sqrt(sum(entry**2 for entry in vector) + TINY)
 
 
-def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr], normal: sp.Expr,
-             b: Bristle, along: Sequence[Sequence[sp.Expr]] | None = None) -> Law:
+def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr],
+             normal: sp.Expr | tuple[sp.Expr, sp.Expr], b: Bristle,
+             along: Sequence[Sequence[sp.Expr]] | None = None) -> Law:
     """Bristles with a return map: the stop operator, with memory of break-away.
 
     ::
@@ -57,7 +58,8 @@ def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr], normal: sp
     Parameters
     ----------
     normal : expression
-        Normal force N, times the radius where measures are angles.
+        Normal force N, times the radius where measures are angles. Of one measure it may be a pair,
+        of positive and of negative forces.
     along : (n, n), optional
         Projection to the tangent plane, in which z must lie.
     """
@@ -71,16 +73,21 @@ def friction(increments: Sequence[sp.Expr], rates: Sequence[sp.Expr], normal: sp
                        for word in ("z", "trial", "friction"))
     size, dynamic, static = sp.symbols("trial_size dynamic_limit static_limit")
     bent_size, slips, speed, drag = sp.symbols("bent_size slips slip_speed drag")
-    limits = ((dynamic, b.dynamic * normal),
-              (static, choose(slid - sp.Rational(1, 2), b.dynamic, b.static) * normal))
+    held = normal
+    if isinstance(normal, tuple):
+        held, normal = (choose(one, *normal) for one in (trial[0], rates[0]))
+    limits = ((dynamic, b.dynamic * held),
+              (static, choose(slid - sp.Rational(1, 2), b.dynamic, b.static) * held))
+    early, late = ((), (limits,)) if held is not normal else (limits, ())
     x = speed / b.speed
     smooth = normal * (b.dynamic * sp.tanh(4 * x) + (b.static - b.dynamic) * x
                        / (x**2 / 4 + sp.Rational(3, 4))**2) / speed
     stages = (
-        (*zip(z, bent, strict=True), *limits),
+        (*zip(z, bent, strict=True), *early),
         (*((t, b.stiffness * zk + b.damping * w) for t, zk, w in zip(trial, z, rates, strict=True)),
          (bent_size, length(z)),
          (speed, sp.sqrt(sum(w**2 for w in rates) + (ROUND * b.speed)**2 + TINY))),
+        *late,
         ((size, length(trial)), (drag, choose(b.speed, smooth, sp.Float(0.0)))),
         ((slips, choose(b.speed, sp.Float(1.0), choose(size - static, sp.Float(1.0),
                                                       sp.Float(0.0)))),),

@@ -14,6 +14,10 @@ meets circle b in the direction of the angle ``gamma = arg d - atan2(D, l)``, an
 
 counts the arcs up to rays that are fixed in the nodes of the circles, from which gamma is measured;
 its variation is that of the distance of the two points of contact along the rope.
+
+A sheave that holds the rope parts two stretches. What they have wound on it are the lengths w of
+`grip`, so that the angle of contact is ``alpha + (w_1 + w_2) / r``, and the rope on it has turned
+by theta. With friction this is an angle of its own, and `friction_rope` acts between both.
 """
 
 import sympy as sp
@@ -34,9 +38,14 @@ from sebody.derive.formulas.elements import (
     rotation,
     varied,
 )
+from sebody.derive.formulas.frictions import BRISTLE
+from sebody.derive.formulas.law_elements import Forces, Measures, law_element
+from sebody.derive.formulas.laws import Bristle, friction
 from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import differential
 
+SOFT = sp.Float(0.25)       # of a grip's trial force, relative to the rope's: else iterations go to
+                            # and fro between both directions of sliding
 SPANS = "line", "end", "span"       # by the number of sheaves at their ends
 
 
@@ -98,6 +107,85 @@ def wheel(planar: bool) -> Element:
     spin = angle.rate.symbols[0] + axis.symbols.dot(turn.rate.symbols)
     return element("planar_" * planar + "rope_wheel", "inertia of a sheave", space, (angle, turn),
                    (inertia, axis), kinetic=inertia.symbols[0] * spin**2 / 2)
+
+
+def friction_rope(planar: bool) -> Element:
+    """Friction of a rope on a sheave: of tensions T at both sides, of which one is
+
+        max T = e^(mu alpha) min T
+
+    where it slips, and less where it sticks. With the slip ``u = r (p - t)`` of the rope, which
+    turns by p, on the sheave, which turns by t,
+
+        T_2 - T_1 = F,  |F| <= (e^(mu alpha) - 1) min T
+
+    by `laws.friction`. So a rope that is slack on one side is slack on both. To keep its place then
+    the equation has, in place of tensions, what would press it in a rope that pushes: the parts of
+    ``E A e / m`` and ``(E A e + c e') / m`` that are negative, which are equal on both sides.
+
+    The bristles of the law are no springs here: their trial force is ``T_2 - T_1`` and what resists
+    the slip of the step, so where it is the force the rope does not slip.
+
+    What is wound is without force, see `rope`: from there material comes with the multipliers of
+    the grips, ``P = T + E A e^2 / (2 m^2)``. So the force on the slip is ``P_2 - P_1``, and its
+    work includes the energy that is lost by what slips to less tension.
+    """
+    space = Space(planar)
+    blocks = [amplitude(space, name) for name in ("p", "t", "s1", "w1", "v1", "s2", "w2", "v2")]
+    (own, sheave), sides = blocks[:2], (blocks[2:5], blocks[5:])
+    meanings = {
+        "along": "radius, negative where a positive turn takes the rope to its first end",
+        "arm": "radius of the sheave [length]", "wrap": "angle of contact at the start",
+        "axial": "E A [force]", "axial_damping": "c [force time]",
+        "settling": "time in which a slip ends where the rope sticks",
+        **{f"{what}_{side}": meaning for side in (1, 2) for what, meaning in (
+            ("material", "of the stretch on this side at the start [length]"),
+            ("given", "material by what the unknown of its far end has become"))}}
+    of = {name: constant(space, name, "scalar", meaning) for name, meaning in meanings.items()}
+    along, radius, wrap, stiffness, damping, settling = (
+        one.symbols[0] for one in list(of.values())[:6])
+    measures = Measures(blocks)
+    u = measures.add("way", along * (own.state.symbols[0] - sheave.state.symbols[0]))
+    speed = along * (own.rate.symbols[0] - sheave.rate.symbols[0])
+    rate = measures.add("way_rate", speed)
+    angle = measures.add("contact", wrap + sum(
+        side[1].state.symbols[0] for side in sides) / radius)
+    elastic, whole, materials = [], [], []
+    for k, (length, near, far) in enumerate(sides, 1):
+        material = (of[f"material_{k}"].symbols[0] - near.state.symbols[0]
+                    + of[f"given_{k}"].symbols[0] * far.state.symbols[0])
+        materials.append(measures.add(f"free_{k}", material))
+        stretched = length.state.symbols[0] - material
+        elastic.append(measures.add(f"elastic_{k}", stiffness * stretched / material))
+        whole.append(measures.add(f"whole_{k}", (
+            stiffness * stretched + damping * measures.rate(stretched)) / material))
+    multipliers = sp.symbols("tension_1:3 passed_1:3")
+    constants = [constant(space, name, "scalar", BRISTLE[name]) for name in (
+        "coefficient", "static", "speed")]
+    mu, mu_static, smooth = (one.symbols[0] for one in constants)
+    pulls, presses = sp.symbols("pull_1:3"), sp.symbols("presses_1:3")
+    dynamic, static, difference, increment, slip, passed = sp.symbols(
+        "dynamic_share static_share difference increment slip passed")
+    held, brake = (one / sum(materials) for one in (
+        SOFT * stiffness, damping + settling * stiffness))
+    law = friction([increment], [slip], presses, Bristle(held, brake, dynamic, static, smooth))
+    touching = choose(angle, angle, sp.S.Zero)
+    slack = [sum(choose(one, sp.S.Zero, one) for one in both)
+             for both in zip(elastic, whole, strict=True)]
+    stages = (
+        (*zip(pulls, (T + t for T, t in zip(multipliers, slack, strict=False)), strict=True),
+         (dynamic, sp.exp(mu * touching) - 1), (static, sp.exp(mu_static * touching) - 1),
+         (slip, rate)),
+        (*((one, choose(pull, pull, sp.S.Zero)) for one, pull in zip(presses, pulls, strict=True)),
+         (difference, pulls[1] - pulls[0])),
+        ((increment, u - kept("way") + difference / held - kept("bent")),),
+        *law.stages,
+        ((passed, law.forces[0] + (multipliers[3] - multipliers[2]) - difference),))
+    least = choose(presses[0] - presses[1], presses[1], presses[0])
+    return law_element(
+        "planar_" * planar + "friction_rope", "friction of a rope on a sheave", space, measures,
+        [*constants, *of.values()], stages, Forces((speed,), (passed,), (passed,)),
+        [("way", u), *law.memory, ("normal", least)], reads=multipliers)
 
 
 def _direction(space: Space, name: str, turn: Block, d: sp.Matrix, D: sp.Expr, straight: sp.Expr

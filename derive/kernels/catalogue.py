@@ -25,6 +25,10 @@ LAWS_ALONG_PATHS = {
     "planar_friction_way": lambda: frictions.friction_way(True),
     "way_stop": stops.way_stop,
 }
+LAWS_OF_SLIP = {            # of ropes on sheaves: a motion without mass
+    "friction_rope": lambda: ropes.friction_rope(False),
+    "planar_friction_rope": lambda: ropes.friction_rope(True),
+}
 SMOOTH = {          # joints, bodies and forces whose column is written in the unknowns
     "parallel_ground": lambda: joints.parallel(True),
     "parallel": lambda: joints.parallel(False),
@@ -98,6 +102,7 @@ LAWS = {            # laws along measures, with numbers that are kept from step 
     "planar_friction_slide": lambda: frictions.friction_slide(True, (0, 0)),
     "planar_friction_slide_f1": lambda: frictions.friction_slide(True, (1, 0)),
     "planar_friction_slide_f1m1": lambda: frictions.friction_slide(True, (1, 1)),
+    **LAWS_OF_SLIP,
     **LAWS_ALONG_PATHS,
     "turn_stop": lambda: stops.turn_stop(False),
     "slide_stop": lambda: stops.slide_stop(False),

@@ -7,10 +7,11 @@ sources add, and files multiply no further than this table; any other combinatio
 
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
+from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
 from sebody.derive.kernels.catalogue import (
-    ELEMENTS as CATALOGUE,
     LAWS,
     LAWS_ALONG_PATHS,
+    LAWS_OF_SLIP,
     SMOOTH,
     SMOOTH_ALONG_PATHS,
 )
@@ -79,7 +80,7 @@ LAYOUTS = "f2", "planar-f2", "any", "anyd", "planar-any", "planar-anyd"
 PRODUCTS = (
     *(row for row in SUPERELEMENTS if _lasts(row[1])
       and (row[0] in LAYOUTS or row[2] == "frame_axes")),
-    # none of what acts along paths, whose runs have no gradients
+    # none of what acts along paths, or slips without mass: such runs have no gradients
     *(name for name in SMOOTH if name not in (*UNSHIPPED, *SMOOTH_ALONG_PATHS)),
-    *(name for name in LAWS if name not in LAWS_ALONG_PATHS),
+    *(name for name in LAWS if name not in (*LAWS_ALONG_PATHS, *LAWS_OF_SLIP)),
     *(name for name, (frame, _) in BODY_LOADS.items() if _lasts(frame)))

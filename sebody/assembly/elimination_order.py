@@ -47,7 +47,7 @@ def elimination_order(model: Mechanism) -> tuple[list[Part], dict[Element, set[D
     parts += [_part(e.name, e.dof_blocks[::-1], 0) for e in model.rigid_bodies.values()]
     parts += [_part(e.name, [e.law.states], 0) for e in model.loads
               if e.law is not None and e.law.states in e.dof_blocks]
-    parts += [_part(e.name, [e.hidden], 0) for e in model.loads if e.hidden is not None]
+    parts += [_part(e.name, [e.hidden], 0) for e in model.loads if e.inert]
     owners: dict[DofBlock, list[int]] = {}
     for k, part in enumerate(parts):
         for dof_block in part.parents:
@@ -80,6 +80,7 @@ def _couplings(model: Mechanism, owners: Owners,
 def _awaited(model: Mechanism, parts: list[Part], owners: Owners) -> dict[Element, set[DofBlock]]:
     """DOF blocks that the multipliers of each constraint follow."""
     ways = {c.way for c in model.constraints}       # which follow the multipliers
+    ways |= {load.hidden for load in model.loads if not load.inert}
     awaited = {c: {p for p in parents(c.dof_blocks) if p.solved} - ways for c in model.constraints}
     for c in model.constraints:
         awaited[c.equations] |= awaited[c]

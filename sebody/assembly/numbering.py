@@ -116,6 +116,8 @@ class _Order:
         self._constraints: dict[DofBlock, list[Element]] = defaultdict(list)     # on each DOF block
         self._ways = {c: c.way for c in model.constraints
                       if c.way is not None and c.shares is None and c.way.solved}
+        self._rubbing = {load.hidden: load for load in model.loads
+                         if load.hidden is not None and not load.inert}
         self._sharing = [c for c in model.constraints if c.shares is not None]
         for constraint in model.constraints:
             if constraint.shares is not None:
@@ -137,21 +139,32 @@ class _Order:
                 self._place(constraint)
 
     def _place(self, constraint: Element) -> None:
+        way = self._ways.get(constraint)
+        if way is not None and not any(_moves(constraint, p) for p in self._awaited[constraint]):
+            self.place(way)
         self.multipliers[constraint] = len(self.names)
         self.names.extend(f"multiplier {j} of {constraint.name}"
                           for j in range(constraint.multipliers))
         for one in self._sharing:
             if one.shares is constraint:
                 self.multipliers[one] = self.multipliers[constraint]
-        way = self._ways.get(constraint)        # behind all its multipliers: no mass for a pivot
-        if way and all(c in self.multipliers for c, one in self._ways.items() if one is way):
+        if way and way not in self.at and all(      # behind all of them: no mass for a pivot
+                c in self.multipliers for c, one in self._ways.items() if one is way):
             self.place(way)
+        for block in [one for one, load in self._rubbing.items()
+                      if set(load.read) <= self.multipliers.keys()]:
+            del self._rubbing[block]
+            self.place(block)
+
+
+def _moves(constraint: Element, dof_block: DofBlock) -> bool:
+    """Tell whether an equation sees what moves; turns of sheaves change no length of a rope."""
+    return not (dof_block.rotational and constraint.kind.endswith("rope"))
 
 
 def _reads(model: Mechanism, multipliers: dict[Element, int]) -> dict[Element, list[int]]:
     """Multipliers of the joint whose reaction presses an element."""
-    return {load: [multipliers[c] + k for c in load.pressed_by.constraints
-                   if not (c.path and c.path.turns) for k in range(c.multipliers)]
+    return {load: [multipliers[c] + k for c in load.read for k in range(c.multipliers)]
             for load in model.loads if load.pressed_by is not None}
 
 

@@ -66,8 +66,13 @@ def refuse_run(run: Simulation) -> None:
     ------
     InputError
         Contacts of points inside bodies, inputs that are set from outside, samples of sensors,
-        motions without mass.
+        ropes that slip on sheaves, motions without mass.
     """
+    for rope in run.model.ropes.values():
+        for one in rope.frictions:
+            raise InputError(f"{one.name!r} lets rope {rope.name!r} slip, a motion without mass, "
+                             "which is not differentiated: leave friction= of the sheave out, or "
+                             "use an Ensemble with values on both sides")
     for one in remembering(run):
         if products_kernel_name(element_kernel_name(one.kind)) is None:
             raise InputError(f"contact {one.name!r} is one of a point inside a body, which is not "

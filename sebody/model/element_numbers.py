@@ -32,7 +32,7 @@ def refuse_numbers(model: Mechanism, one: Element) -> None:
     if "exponent" in c:
         checked_law(what, c["stiffness"], c["exponent"])
     if "static" in c:
-        checked_friction(what, c["coefficient"], c["static"], c["bristle"] or None, None,
+        checked_friction(what, c["coefficient"], c["static"], c.get("bristle") or None, None,
                          c["speed"])
     if "radius" in c and "preload" in c:
         inputs.number(c["radius"], f"{what}: radius", above=0)

@@ -265,6 +265,7 @@ class Element:
     hidden: DofBlock | None = None  # an unknown on no node, of ropes and sheaves
     shares: "Element | None" = None     # whose multipliers it adds to
     pressed_by: "Joint | None" = None       # whose multipliers the friction in it reads
+    reads: tuple[int, ...] | None = None    # which of its equations; all of them by default
     seen: int | None = None     # of friction along a path: piece whose tangent it reads
     law: LawParts | None = None             # of a continuous controller
     series: LoadSeries | None = None    # of a load on a body: of the columns of its loads
@@ -304,6 +305,20 @@ class Element:
     def way(self) -> DofBlock | None:
         """An unknown that is on no node: the way of a point on a path, a length of a rope."""
         return self.hidden if self.path is None else self.path.way
+
+    @property
+    def read(self) -> "tuple[Element, ...]":
+        """The equations whose multipliers it reads."""
+        if self.pressed_by is None:
+            return ()
+        equations = tuple(one for one in self.pressed_by.constraints
+                          if not (one.path and one.path.turns))
+        return equations if self.reads is None else tuple(equations[k] for k in self.reads)
+
+    @property
+    def inert(self) -> bool:
+        """Tell whether it has an unknown with mass: a wheel has, the friction of a rope has not."""
+        return self.hidden is not None and self.pressed_by is None
 
     @property
     def equations(self) -> "Element":
@@ -406,6 +421,12 @@ class Sheave(NamedTuple):
     radius: float           # [length]
     axis: NDArray           # unit vector, global axes at the start, (3,)
     wheel: Element | None   # of one with inertia, which turns about its node
+    friction: float = 0.0   # coefficient against ropes that pass
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether tensions on the sides of a rope that passes it differ."""
+        return self.wheel is not None or self.friction > 0.0
 
     @property
     def angle(self) -> DofBlock | None:
@@ -443,6 +464,7 @@ class Rope(NamedTuple):
     places: tuple[RopePlace, ...]
     stretches: tuple[Stretch, ...]
     winch: DofBlock | None      # what a winch has given
+    frictions: tuple[Element, ...] = ()     # on the sheaves that have some, in its order
 
     def __repr__(self) -> str:
         over = ", ".join(place.node.name if place.sheave is None else place.sheave.name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -39,13 +39,15 @@ SIDES = {"+": 1.0, "-": -1.0}
 
 
 def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
-           axis: ArrayLike | str | None = None, inertia: float = 0.0) -> Sheave:
+           axis: ArrayLike | str | None = None, inertia: float = 0.0,
+           friction: float = 0.0) -> Sheave:
     """Sheave that ropes pass, or drum that they end on, with its centre on a node.
 
-    Its axis turns with the node. Without inertia a rope passes it without resistance; at the first
-    or last place of a rope it is a drum, on which the rope is wound as the node turns about the
-    axis. With inertia it turns in a bearing without friction on its node, no rope slips on it, and
-    tensions on both sides differ by what accelerates it.
+    Its axis turns with the node. Without inertia and friction a rope passes it without resistance;
+    at the first or last place of a rope it is a drum, on which the rope is wound as the node turns
+    about the axis. With inertia it turns in a bearing without friction on its node, and tensions on
+    both sides differ by what accelerates it; no rope slips on it unless it has a coefficient of
+    friction. Without inertia a sheave with friction is a pin or pulley that turns with its node.
 
     Parameters
     ----------
@@ -60,6 +62,10 @@ def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
     inertia : float
         Moment of inertia about the axis, of what turns in the bearing [mass length^2]. Results are
         ``<name>.angle`` and ``<name>.rate``, relative to the node. Its mass is the node's.
+    friction : float
+        Coefficient mu against ropes that pass: of two tensions at its sides the larger one is at
+        most ``e^(mu angle)`` times the smaller one, with the angle of contact, and exactly this
+        where the rope slips. Where it sticks it moves with the sheave.
 
     Raises
     ------
@@ -87,8 +93,9 @@ def sheave(model: Mechanism, name: str, node: Node | str, radius: float,
     else:
         along = direction(model, axis, what, a)
     inertia = inputs.number(inertia, f"{what}: inertia", least=0.0)
+    friction = inputs.number(friction, f"{what}: friction", least=0.0)
     wheel = _wheel(model, name, a, along, inertia) if inertia else None
-    model.sheaves[name] = Sheave(name, a, radius, along, wheel)
+    model.sheaves[name] = Sheave(name, a, radius, along, wheel, friction)
     return model.sheaves[name]
 
 
@@ -109,8 +116,9 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
 
     Its tension is ``T = E A e/m + c e'/m`` with the elongation e and the material m between its
     ends, and zero where it is slack; the part of the damping is at most that of the elongation.
-    Points on the way are rings that it slides through without friction. It has no mass, and bends
-    without resistance. Where it leaves and meets sheaves follows from the geometry at each time.
+    Points on the way are rings that it slides through without friction; sheaves may have some. It
+    has no mass, and bends without resistance. Where it leaves and meets sheaves follows from the
+    geometry at each time.
 
     Parameters
     ----------
@@ -159,28 +167,55 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
                          "its first place, or turn the drum")
     way = sum(span.length for span in spans) + sum(
         abs(place.radius) * place.wrap for place in made[1:-1])
-    material = material or way / (1.0 + pretension / stiffness)
+    wound = sum(abs(place.radius) * place.wrap for place in made[1:-1] if _holds(place))
+    if material and not material > wound:
+        raise InputError(f"{what} has the length {material:g}, and what is wound on its sheaves "
+                         f"{wound:.6g}: give more")
+    # of what is straight or free on sheaves, the part that is there without force
+    free = (material - wound) / (way - wound) if material else 1.0 / (1.0 + pretension / stiffness)
     name = chosen_name(model, name, ROPE)
     numbers = {"stiffness": stiffness, "damping": damping}
     ends = [0, *(k for k, place in enumerate(made[1:-1], 1) if _holds(place)), len(made) - 1]
-    stretches, grips = [], []
+    angles = {k: _angles(name, k, made[k], k in ends[1:-1]) for k in ends}
+    stretches: list[Stretch] = []
+    grips: list[list[Element]] = []
     for k, (i, j) in enumerate(pairwise(ends)):
-        own = name if len(ends) == 2 else f"{name}[{k}]"
-        part = _Part(own, made[i:j + 1], spans[i:j], winch is not None and i == 0)
+        called = name if len(ends) == 2 else f"{name}[{k}]"
+        part = _Part(called, made[i:j + 1], spans[i:j], winch is not None and i == 0)
         stretches.append(_stretch(model, part, numbers | {
-            "material": part.way * material / way}))
-        grips += _grips(model, part, stretches[-1])
-    equations = [one for stretch in stretches for one in (stretch.law, *stretch.spans)] + grips
-    first, last = made[0].node, made[-1].node
-    model.joints.append(Joint(name, tuple(equations), first, last, None, ROPE))
+            "material": part.way * free}))
+        grips.append(_grips(model, part, stretches[-1], (angles[i], angles[j])))
+    equations = [one for stretch in stretches for one in (stretch.law, *stretch.spans)]
+    equations += [one for both in grips for one in both]
+    joint = Joint(name, tuple(equations), made[0].node, made[-1].node, None, ROPE)
+    model.joints.append(joint)
+    frictions = []
+    for n, k in enumerate(ends):
+        own = angles[k]
+        if own is not None and own.slips:
+            sides = (stretches[n - 1], grips[n - 1][-1]), (stretches[n], grips[n][0])
+            frictions.append(_friction(model, joint, made[k], own, sides, numbers))
+    model.loads += frictions
     given = None
     if winch is not None:
         place = stretches[0].law.attachments[1]
         given = place.dof_block
         given.motions.append(Motion(chosen_name(model, None, f"winch of {name}"), np.ones(1),
                                     winch, place))
-    model.ropes[name] = Rope(name, tuple(made), tuple(stretches), given)
+    model.ropes[name] = Rope(name, tuple(made), tuple(stretches), given, tuple(frictions))
     return model.ropes[name]
+
+
+class _Angles(NamedTuple):
+    """Angles by which a rope on a sheave, and the sheave, have turned relative to its node."""
+
+    rope: Attachment
+    sheave: Attachment
+
+    @property
+    def slips(self) -> bool:
+        """Tell whether the angles differ."""
+        return self.rope is not self.sheave
 
 
 class _Part(NamedTuple):
@@ -220,8 +255,8 @@ def _length(what: str, length: float | Source, pretension: float
 
 
 def _holds(place: RopePlace) -> bool:
-    """Tell whether a place on the way of a rope holds it: a sheave with inertia."""
-    return place.sheave is not None and place.sheave.wheel is not None
+    """Tell whether a place on the way of a rope holds it: a sheave with inertia or friction."""
+    return place.sheave is not None and place.sheave.holds
 
 
 def _place(model: Mechanism, what: str, place: Node | Sheave | str
@@ -295,25 +330,63 @@ def _span(model: Mechanism, name: str, span: Span, law: Element, arc: float,
                    + tuple(_turning(model, end.node) for end in on), constants, 0, shares=law)
 
 
-def _grips(model: Mechanism, part: _Part, stretch: Stretch) -> list[Element]:
+def _angles(name: str, k: int, place: RopePlace, passed: bool) -> _Angles | None:
+    """The angles of place k of a rope, if it is a sheave; one angle where no rope slips on it."""
+    if place.sheave is None:
+        return None
+    wheel = place.sheave.wheel
+    turned = wheel.attachments[0] if wheel is not None else Attachment(
+        _hidden(f"{name}.angle {k}", 0.0, fixed=True), "position")
+    if not (passed and place.sheave.friction):
+        return _Angles(turned, turned)
+    return _Angles(Attachment(_hidden(f"{name}.angle {k}", 0.0), "position"), turned)
+
+
+def _grips(model: Mechanism, part: _Part, stretch: Stretch, angles: Sequence[_Angles | None]
+           ) -> list[Element]:
     """Equations of what sheaves at the ends of a part have taken up."""
     found, (places, spans) = [], part[1:3]
     for k, (place, other, span, sign) in enumerate((
             (places[0], places[1], spans[0], 1.0), (places[-1], places[-2], spans[-1], -1.0))):
-        if place.sheave is None:
+        own = angles[k]
+        if own is None:
             continue
-        taken, wheel = stretch.law.attachments[1 + k], place.sheave.wheel
-        angle = wheel.attachments[0] if wheel is not None else Attachment(
-            _hidden(f"{part.name}.angle {k}", 0.0, fixed=True), "position")
-        radius = sign * place.radius
-        about = float(np.sign(place.normal @ place.sheave.axis))
+        taken, radius = stretch.law.attachments[1 + k], sign * place.radius
         found.append(Element(
             part.name, model.kind_of("rope_grip"),
-            positions(place.node, other.node) + (taken, angle, _turning(model, place.node)),
-            {"r_a": radius, "r_b": sign * other.radius, "turn": about * radius,
+            positions(place.node, other.node) + (taken, own.rope, _turning(model, place.node)),
+            {"r_a": radius, "r_b": sign * other.radius, "turn": sign * _along(place),
              **_axes(model, "a", sign * span.direction, place.normal)}, 1,
             hidden=taken.dof_block))
     return found
+
+
+def _along(place: RopePlace) -> float:
+    """Rope that a sheave takes towards the last place in a turn by one radian [length]."""
+    assert place.sheave is not None
+    return float(np.sign(place.normal @ place.sheave.axis)) * place.radius
+
+
+def _friction(model: Mechanism, joint: Joint, place: RopePlace, angles: _Angles,
+              sides: Sequence[tuple[Stretch, Element]], numbers: Mapping[str, float]) -> Element:
+    """Friction between the stretches on both sides of a sheave, each with its grip there."""
+    assert place.sheave is not None
+    radius, coefficient = place.sheave.radius, place.sheave.friction
+    before, after = (side.law for side, _ in sides)
+    read = [one for both in zip(*((side.law, grip) for side, grip in sides), strict=True)
+            for one in both]
+    return Element(
+        chosen_name(model, None, f"friction of {joint.name} on {place.sheave.name}"),
+        model.kind_of("friction_rope"),
+        (angles.rope, angles.sheave, *(side.law.attachments[n] for (side, _), order in zip(
+            sides, ((0, 2, 1), (0, 1, 2)), strict=True) for n in order)),
+        {"coefficient": coefficient, "static": coefficient, "speed": 0.0, "along": _along(place),
+         "arm": radius, "wrap": place.wrap,
+         "axial": numbers["stiffness"], "axial_damping": numbers["damping"], "settling": 0.0,
+         "material_1": before.number("material"), "given_1": before.number("given_a"),
+         "material_2": after.number("material"), "given_2": after.number("given_b")},
+        hidden=angles.rope.dof_block, pressed_by=joint,
+        reads=tuple(joint.constraints.index(one) for one in read), tuned={"settling": 1.0})
 
 
 def _axes(model: Mechanism, letter: str, ray: NDArray, normal: NDArray) -> dict[str, NDArray]:

@@ -121,7 +121,7 @@ def _springs(model: Model) -> dict[str, Any]:
 
 
 def _contacts(model: Model) -> dict[str, Any]:
-    return {e.name: e for e in model.loads if e.constants.keys() & {"bristle", "exponent"}}
+    return {e.name: e for e in model.loads if e.constants.keys() & {"coefficient", "exponent"}}
 
 
 def _drives(model: Model) -> dict[str, Any]:

@@ -50,7 +50,7 @@ def length(of: Numbers, name: str) -> Number:
     rope = of.model.ropes[name]
     passed = [place for place in rope.places[1:-1] if place.sheave is not None]
     held = (abs(place.radius) * wrap for place, wrap in zip(passed, wraps(of, name), strict=True)
-            if place.sheave and place.sheave.wheel)     # others are in the lengths of stretches
+            if place.sheave and place.sheave.holds)     # others are in the lengths of stretches
     return total([*(of.coordinates("q", stretch.length)[0] for stretch in rope.stretches), *held])
 
 
@@ -63,6 +63,18 @@ def _elongation(of: Numbers, stretch: Stretch) -> Number:
     law = stretch.law
     s, a, b = (of.coordinates("q", block)[0] for block in law.dof_blocks)
     return (s - law.number("material") - law.number("given_a") * a - law.number("given_b") * b)
+
+
+def rubs(of: Parts, name: str) -> bool:
+    """Tell whether a rope passes sheaves with friction."""
+    return bool(of.model.ropes[name].frictions)
+
+
+def slip(of: Numbers, name: str) -> list[Number]:
+    """Ways of a rope on the sheaves with friction that it passes, towards its last place."""
+    return [one.number("along") * (of.coordinates("q", one.dof_blocks[0])[0]
+                                   - of.coordinates("q", one.dof_blocks[1])[0])
+            for one in of.model.ropes[name].frictions]
 
 
 def wraps(of: Numbers, name: str) -> list[Number]:

@@ -193,6 +193,7 @@ ROPES = {
     "length": Quantity(ropes.length, "length"),
     "elongation": Quantity(ropes.elongation, "length"),
     "wraps": Quantity(ropes.wraps, numbered=True, has=ropes.passes),
+    "slip": Quantity(ropes.slip, "length", numbered=True, has=ropes.rubs),
 }
 SHEAVES = {
     "angle": Quantity(lambda of, owner: ropes.turned(of, owner, "q")),

@@ -217,6 +217,6 @@ def _width(one: Any) -> int:
     if any(one.carried):
         return one.width
     modes = 0 if one.law is None else len(one.law.modes)
-    read = 0 if one.pressed_by is None else one.pressed_by.multipliers
+    read = sum(equation.multipliers for equation in one.read)
     return sum(dof_block.start.size for dof_block in one.dof_blocks) + one.multipliers + read + (
         one.mode is not None) + modes

@@ -20,6 +20,7 @@ from sebody.model.numbering import Numbering, coordinates
 from sebody.results.recording import Start
 from sebody.runs.redundancy import Solver, least, part_sizes, parties_of
 from sebody.runs.rigid_start import follow_drives
+from sebody.runs.slips import begin_slips
 from sebody.runs.tuning import LoadedBristles, tune
 from sebody.runs.user_faults import fault
 
@@ -68,6 +69,8 @@ def begin(model: Mechanism, system: System, numbering: Numbering, state: State,
                                                _rates(system, state, multipliers))
     changed |= _fit_velocities(model, system, numbering, state, masses, solver, multipliers,
                                not goes_on)
+    if not goes_on:
+        begin_slips(model, numbering, state)
     if solver.redundant:
         _check_accelerations(system, numbering, state, solver)
     state.frames_old[:] = state.frames

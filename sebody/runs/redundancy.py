@@ -53,7 +53,9 @@ def _scales(matrix: csc_matrix, system: System) -> NDArray:
     """
     held, part = multiplying(system), system.part[:matrix.shape[0]]
     sizes = np.bincount(part, np.where(held, 0.0, np.abs(matrix.diagonal())), len(part))
-    sizes = np.where(sizes > 0.0, sizes, part_sizes(matrix, system))[part]
+    usual = system.inertias[:len(part)]     # of the model: those of the matrix may be made larger
+    sizes = np.where(sizes[part] > 0.0, sizes[part],
+                     np.where(usual > 0.0, usual, part_sizes(matrix, system)))
     strengths = np.where(held, matrix.power(2) @ np.where(held, 0.0, 1.0 / sizes), 0.0)
     return 1.0 / np.sqrt(np.where(held, np.bincount(part, strengths, len(part))[part], sizes))
 

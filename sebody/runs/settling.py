@@ -126,6 +126,8 @@ def _balance(run: Standstill, tolerance: float, spin: Spin, springs: Springs | N
             tangent, residual = linear(run, spin, springs)
         except InputError:              # too far: a state that no element can evaluate
             return None, True
+        if not (np.isfinite(tangent.data).all() and np.isfinite(residual).all()):
+            return None, True           # likewise, of sheaves that would overlap
         solver = Scaled(tangent)
         if stiff and not solver.regular:
             return None, True

@@ -41,7 +41,7 @@ BEYOND = 2.0            # of the static limit: force of a bristle that is to sli
 
 def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
          masses: csc_matrix) -> None:
-    """Set stiffness and damping of bristles, and the stiffness of gear teeth, that are not given.
+    """Set what is not given of bristles, the stiffness of gear teeth, when ropes stop slipping.
 
     Parameters
     ----------
@@ -54,6 +54,9 @@ def tune(model: Mechanism, system: System, numbering: Numbering, state: State,
     solve = least(masses, system)
     for load in tuned:
         constants = ElementConstants(load, system, numbering)
+        if "settling" in load.tuned:
+            constants["settling"] = load.tuned["settling"] * state.clock.natural
+            continue
         rows = directions(load, numbering, state)
         mass = 1.0 / _mobility(rows, solve, system, state, numbering.free)
         natural = mass / state.clock.natural**2
@@ -122,7 +125,7 @@ class ElementConstants:
 def unbend(model: Mechanism, numbering: Numbering, state: State) -> None:
     """Straighten all bristles: an equilibrium is sought from there."""
     for load in model.loads:
-        if load.tuned:
+        if load in numbering.memories:
             names = element_kernel(load.kind).MEMORY
             for place, name in zip(numbering.memories[load], names, strict=True):
                 if name.startswith(("bent", "slid")):
@@ -162,7 +165,7 @@ class LoadedBristles:
         constants = ElementConstants(load, self.system, self.numbering)
         memory, names = self.numbering.memories[load], element_kernel(load.kind).MEMORY
         bent = [place for place, name in zip(memory, names, strict=True) if name.startswith("bent")]
-        if not bent or constants["speed"] > 0:
+        if not bent or constants["speed"] > 0 or load.hidden is not None:   # of a rope: it is free
             return []
         if "friction" in load.kind:
             rows = directions(load, self.numbering, self.state)

@@ -29,12 +29,12 @@ FOREIGN = hoist().sheaves["head"]
 NEW, ROPE = "sheave 'new'", "rope 'line'"
 CASES = {
     "sheave": Right(Model.sheave, {"name": "new", "node": "a", "radius": 0.1, "axis": Z,
-                                 "inertia": 0.2}, {
+                                 "inertia": 0.2, "friction": 0.1}, {
         "name": [*are("name of a sheave", *NO_NAME),
                  ("head", "sheave 'head' is there already: give another name"),
                  ("a", "sheave cannot be called 'a': a node has that name")],
         "node": nodes(foreign, lacks_place), "radius": positive(f"{NEW}: radius"),
-        "inertia": not_negative(f"{NEW}: inertia"),
+        "inertia": not_negative(f"{NEW}: inertia"), "friction": not_negative(f"{NEW}: friction"),
         "axis": [(None, f"{NEW} has no axis: give axis=, the direction it turns about"),
                  *[pair for pair in vectors("axis of the sheave 'new' at 'a'", 3)
                    if pair[0] is not None],

@@ -62,7 +62,7 @@ def flat_element(flat: Flattening, element: Element) -> Element:
     kind, constants = ELEMENTS[element.kind](flat, element)
     hidden = None if element.hidden is None else flat.dof_block(element.hidden)
     return Element(element.name, kind, tuple(flat.place(p) for p in element.attachments), constants,
-                   time_function=element.time_function, hidden=hidden)
+                   time_function=element.time_function, hidden=hidden, tuned=element.tuned)
 
 
 def flat_joint(flat: Flattening, joint: Joint) -> Joint:
@@ -293,4 +293,4 @@ ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "table_torsion_spring": _table_torsion_spring, "bushing": _bushing, "bearing": _bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
     "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged,
-    "rope_wheel": flat_wheel}
+    "rope_wheel": flat_wheel, "friction_rope": _unchanged}

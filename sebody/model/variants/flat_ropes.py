@@ -66,7 +66,7 @@ def flat_ropes(flat: Flattening, model: Mechanism, made: Mechanism) -> None:
             load for load in made.loads if load.name == sheave.wheel.name)
         made.sheaves[sheave.name] = Sheave(
             sheave.name, flat.node(sheave.node), sheave.radius,
-            float(np.sign(flat.plane.normal @ sheave.axis)) * NORMAL, wheel)
+            float(np.sign(flat.plane.normal @ sheave.axis)) * NORMAL, wheel, sheave.friction)
     for rope in model.ropes.values():
         old = next(joint for joint in model.joints if joint.name == rope.name)
         of = dict(zip(old.constraints, joints[rope.name].constraints, strict=True))
@@ -77,6 +77,8 @@ def flat_ropes(flat: Flattening, model: Mechanism, made: Mechanism) -> None:
             for place in rope.places]
         stretches = tuple(Stretch(of[one.law], tuple(of[span] for span in one.spans))
                           for one in rope.stretches)
+        rubbing = {load.name: load for load in made.loads}
         made.ropes[rope.name] = Rope(
             rope.name, tuple(places), stretches,
-            None if rope.winch is None else flat.dof_block(rope.winch))
+            None if rope.winch is None else flat.dof_block(rope.winch),
+            tuple(rubbing[one.name] for one in rope.frictions))

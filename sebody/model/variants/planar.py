@@ -169,8 +169,10 @@ class _Flat(NamedTuple):
                     and load.point is None}
         for load in model.loads:
             # a kernel that reads multipliers has their numbers in its name
-            if load.pressed_by is not None and on_nodes[load][0].kind[-1].isdecimal():
-                on_nodes[load][0].pressed_by = joints[load.pressed_by]
+            made_of, joint = on_nodes.get(load, [None])[0], load.pressed_by
+            if made_of is not None and joint is not None and (
+                    load.reads is not None or made_of.kind[-1].isdecimal()):
+                made_of.pressed_by, made_of.reads = joints[joint], load.reads
         bodies = flat_bodies(model, flat.plane.axes)
         rates = {name: _rates(body, bodies[name]) for name, body in model.bodies.items()}
         for load in model.loads:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.contract.layout import AT_FRAME, ENERGY, POWERS, RESIDUAL, STRAIN, TANGENT
+from sebody.verify.check import ropes
 from sebody.verify.check.states import (
     LIMIT,
     STATES,
@@ -43,6 +44,8 @@ def cases(module: ModuleType, case: Case) -> dict[str, Case]:
     """The case in every branch of its law."""
     names = {part.name for part in module.CONSTANTS}
     case = _remembering(module, case)
+    if ropes.rubs(module):
+        return ropes.rubbing(case)
     directions = {name: constants_of(case)[name] for name in names & {"e", "n"}}
     case = changed(case, **{name: v / np.linalg.norm(v) for name, v in directions.items()})
     contact = "level" in names or "size" in names or "upper" in names

@@ -1,4 +1,4 @@
-"""Criteria of ropes: the law of a stretch in every branch, spans past sheaves that are apart."""
+"""States of ropes: the law of a stretch and friction in every branch, sheaves that are apart."""
 
 from types import ModuleType
 
@@ -21,6 +21,35 @@ SLOW = 0.5              # factor of velocities: differences in time see sharp be
 SMALL = 1e-4            # step of differences: branches end further away
 BRANCHES = {"taut": (0.5, 0.05), "taut, damping at its limit": (0.5, 50.0),
             "slack": (-0.5, 0.05)}      # elongation and damping
+# coefficient, speed of the smooth law, and strains and tensions on both sides
+RUBBING = {"sticks": (3.0, 0.0, (0.3, 0.4), (1.0, 1.2)),
+           "slips": (1e-2, 0.0, (0.3, 0.4), (1.0, 2.2)),
+           "slips the other way": (1e-2, 0.0, (0.3, 0.4), (2.2, 1.0)),
+           "smooth": (0.3, 1.0, (0.3, 0.4), (1.0, 2.2)),
+           "slack on one side": (0.3, 0.0, (-0.3, 0.4), (0.0, 2.2)),
+           "slack": (0.3, 0.0, (-0.3, -0.4), (0.0, 0.0))}
+
+
+def rubs(module: ModuleType) -> bool:
+    """Tell whether a kernel is the friction of a rope on a sheave."""
+    return "wrap" in {part.name for part in module.CONSTANTS}
+
+
+def rubbing(case: Case) -> dict[str, Case]:
+    """The case of friction on a sheave in every branch."""
+    found, values = {}, constants_of(case)
+    for branch, (coefficient, speed, strains, tensions) in RUBBING.items():
+        q = case.q.copy()
+        q[[3, 4, 6, 7]] *= 0.1
+        for k, strain in enumerate(strains):
+            length, near, far = range(2 + 3 * k, 5 + 3 * k)
+            material = (values[f"material_{k + 1}"] - q[near]
+                        + values[f"given_{k + 1}"] * q[far])
+            q[length] = float(material) * (1.0 + strain)
+        q[8:10] = tensions
+        found[branch] = changed(case._replace(q=q), coefficient=coefficient,
+                                static=1.1 * coefficient, speed=speed)
+    return found
 
 
 def is_law(module: ModuleType) -> bool:
