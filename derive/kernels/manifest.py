@@ -7,8 +7,8 @@ sources add, and files multiply no further than this table; any other combinatio
 
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.body_load import BODY_LOADS
-from sebody.derive.kernels.catalogue import ELEMENTS as CATALOGUE
 from sebody.derive.kernels.catalogue import (
+    ELEMENTS as CATALOGUE,
     LAWS,
     LAWS_ALONG_PATHS,
     LAWS_OF_SLIP,
