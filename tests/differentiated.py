@@ -5,8 +5,9 @@ from functools import cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from sebody import Model
+from sebody import Model, plane
 from sebody.analysis import Ensemble, gradient
+from sebody.control import pid
 from sebody.fem import Section, rectangle, straight_beam
 from sebody.gradients.parameters import columns_of
 from sebody.model import profiles
@@ -63,8 +64,11 @@ def spinning():
     return m
 
 
-def four_bar(flexible=False):
-    """Spatial four-bar on four parallel hinges: three constraints are redundant if it is rigid."""
+def four_bar(modes=0, coil=True):
+    """Spatial four-bar on four parallel hinges, its coupler flexible where there are modes.
+
+    Three constraints are redundant if it is rigid.
+    """
     p = [place(0, 0, 0), place(0, 1, 0), place(2, 1.5, 0), place(2, 0, 0)]
     m = Model()
     m.gravity(-9.81 * Y)
@@ -83,15 +87,16 @@ def four_bar(flexible=False):
     m.revolute(d, axis=Z, name="D")
     c = m.attach("c", p[2], d)
     k1 = m.node("k1", p[1], at="b")
-    if flexible:
+    if modes:
         k2 = m.node("k2", p[2])
-        m.beam("coupler", (k1, k2), rectangle(0.05, 0.04, 2.0e9, 0.3, 1000.0), 6, 1, 3)
+        m.beam("coupler", (k1, k2), rectangle(0.05, 0.04, 2.0e9, 0.3, 1000.0), 6, 1, modes)
     else:
         rod("coupler", k1, p[1], p[2], 2.0)
         k2 = m.attach("k2", p[2], k1)
     m.revolute(k1, axis=Z, to=b, name="B")
-    m.revolute(k2, axis=Z, to=c, name="C", explicit=not flexible)
-    m.torsion_spring(a, stiffness=3.0, damping=0.2, axis=Z, name="coil")
+    m.revolute(k2, axis=Z, to=c, name="C", explicit=not modes)
+    if coil:
+        m.torsion_spring(a, stiffness=3.0, damping=0.2, axis=Z, name="coil")
     m.torque(d, 2.0 * Z, [(0, 0), (0.3, 1.0), (0.6, 0.0)], name="torque")
     m.initial_velocity(a, angular=2.0 * Z)
     return m
@@ -239,6 +244,61 @@ def chain(links):
             last = m.node(f"base {k + 2}", end.point, at=end)
             m.revolute(end, Z, to=last)
     m.torque("base", 5.0 * Z, [(0, 0), (0.05, 1)], name="torque")
+    return m
+
+
+def journal(**friction):
+    """A pendulum with friction in its bearing, pressed by what the hinge carries; a torque jumps.
+    """
+    m = Model(planar=True)
+    m.gravity((0.3, -9.81))
+    a = m.node("a", (0.2, 0.1))
+    m.rigid_body("bob", a, 1.3, 0.05, centre=(0.8, -0.2))
+    m.revolute(a, name="hinge", explicit=True)
+    m.friction("hinge", **{"coefficient": 0.3, "radius": 0.04, "name": "dry"} | friction)
+    m.initial_velocity(a, angular=2.0)
+    m.torque(a, 1.0, [(0, 0.4), (0.033, 1), (0.033, -1), (0.072, 0.5), (0.072, 2), (0.2, 0.5)],
+             name="kick")
+    return m
+
+
+def ball():
+    """A turning ball on the ground: it bounces, slides and rolls."""
+    m = Model()
+    m.gravity(-9.81 * Z + 2.0 * X)
+    a = m.node("a", place(0.1, 0.2, 0.099))
+    m.rigid_body("body", a, 1.2, TURN @ np.diag([4e-3, 5e-3, 6e-3]) @ TURN.T)
+    m.initial_velocity(a, 0.5 * X + 0.2 * Y, angular=Y + 2.0 * Z)
+    m.contact(a, on=plane(Z, place(0, 0, 0)), radius=0.1, stiffness=1e4, restitution=0.4,
+              friction=0.3, name="floor")
+    return m
+
+
+def gears():
+    """Two wheels whose teeth have play."""
+    m = Model(planar=True)
+    for k, (x, inertia, speed) in enumerate(((0.1, 0.02, 3.0), (0.5, 0.05, 0.0))):
+        node = m.node(f"n{k}", (x, 0.2))
+        m.rigid_body(f"wheel {k}", node, 1.0, inertia)
+        m.revolute(node, name=f"shaft {k}")
+        m.initial_velocity(node, angular=speed)
+    m.gear("shaft 0", "shaft 1", ratio=-2.5, backlash=0.01, name="mesh", stiffness=200.0)
+    m.torque("n0", 0.5, [(0, 0.5), (0.1, 1.0), (0.5, -1)], name="motor")
+    m.torsion_spring("n1", stiffness=1.0, damping=0.05, name="coil")
+    return m
+
+
+@cache      # compiling a law takes a second
+def arm():
+    """A flexible arm, moved to an angle by a motor with a rotor."""
+    m = Model(planar=True)
+    m.gravity((0.4, -9.0))
+    hub, tip = m.node("hub", (0.1, 0.2)), m.node("tip", (1.0, 0.5))
+    m.beam("beam", (hub, tip), rectangle(0.03, 0.02, 2e9, 0.3, 1200.0), 4, 1, 2)
+    m.rigid_body("rotor", hub, 1.0, 0.02)
+    m.revolute(hub, name="hinge")
+    m.actuator("motor", joint="hinge", inertia=0.01, ratio=3.0)
+    m.controller("loop", pid(20.0, 5.0, 2.0, 80.0, 0.7), ["hinge.angle"], ["motor"])
     return m
 
 

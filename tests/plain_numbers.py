@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from readings import TABLE
 
 from sebody import Model, simulate
 from sebody.compiler.choice import VARIABLE, way
@@ -43,7 +44,9 @@ def of_kernel(name: str) -> dict[str, np.ndarray]:
 
 
 def of_scene(name: str) -> dict[str, np.ndarray]:
-    """Positions of all nodes in short runs of the cases of a scene, over the largest."""
+    """Positions of nodes in short runs of the cases of a scene, or of a model, over the largest."""
+    if name in TABLE:
+        return _of_run(name, TABLE[name].build(), TABLE[name].h)
     found = {}
     for case in cases(name)[:2]:
         scene = case.build()

@@ -7,6 +7,7 @@ import os
 
 import pytest
 from plain_numbers import FUNCTIONS, compared
+from readings import TABLE
 
 from sebody.compiler.choice import VARIABLE
 
@@ -16,7 +17,8 @@ SAME = 1e-10
 
 
 def test_runs_are_those_of_the_fast_way(tmp_path):
-    """Of two scenes with flexible bodies and a rigid one, and of a model with Python functions."""
-    differences, _ = compared(tmp_path, "planar-hinged-beam", "heavy-top", FUNCTIONS)
-    assert len(differences) == 4
+    """Of scenes with flexible bodies and a rigid one, of Python functions, and of the table."""
+    models = [name for name, row in TABLE.items() if row.plain]
+    differences, _ = compared(tmp_path, "planar-hinged-beam", "heavy-top", FUNCTIONS, *models)
+    assert len(differences) == 4 + len(models)
     assert max(differences.values()) < SAME

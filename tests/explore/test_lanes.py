@@ -201,27 +201,6 @@ def test_neighbours_are_alike():
     assert within < 0.3         # by chance (8 - 1) / (8 + 1)
 
 
-def test_coupled_and_linked_bodies(small):
-    """A four-bar: multipliers, rigid links, matrices that are rotated, packed products of option C.
-
-    Members in another order, and each as a single run.
-    """
-    rng = np.random.default_rng(7)
-    given = {"spring.stiffness": rng.uniform(5, 90, 9), "motor.amplitude": rng.uniform(-1, 4, 9),
-             "gravity": rng.uniform(-12, 12, (9, 2))}
-    outputs = {"end": "tip.position", "energy": final("energy.strain")}
-    four_bar = Ensemble(linkage(), 4e-3)
-    found = four_bar.run(given, 0.3, outputs)
-    assert found.in_lanes == 9 and "eight at a time" in repr(four_bar)
-    back = four_bar.run({name: v[::-1] for name, v in given.items()}, 0.3, outputs)
-    assert_same(back, found, slice(None, None, -1))
-    for run in range(0, 9, 4):
-        result = single(linkage(), {name: v[run] for name, v in given.items()}, 4e-3, 0.3)
-        # of a size of 2: rounding, amplified by 75 steps of a mechanism
-        assert np.abs(found["end"][run] - result["tip.position"]).max() < 1e-11
-        assert found["energy"][run] == pytest.approx(result["energy.strain"][-1], rel=1e-7)
-
-
 def test_straight_code_lives_as_long_as_the_arrays_that_use_it(small, monkeypatch):
     """Where none is kept for other ensembles."""
     from sebody.engine.lanes import loop
@@ -248,8 +227,7 @@ def test_straight_code_lives_as_long_as_the_arrays_that_use_it(small, monkeypatc
 
 @pytest.mark.parametrize("scene, options, scheme, reason", [
     ("stick-slip", {}, None, "friction"),
-    ("pole-on-cart", {}, generalized_alpha(index=2), "controllers with index 2"),
-    ("chain", {"links": 64}, None, "equal bodies")])
+    ("pole-on-cart", {}, generalized_alpha(index=2), "controllers with index 2")])
 def test_the_ensemble_says_why_its_runs_are_made_one_by_one(scene, options, scheme, reason, small):
     """By facts of the model; its runs are those of the scalar loop."""
     built = builder(scene)(**options)

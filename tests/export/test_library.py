@@ -8,8 +8,9 @@ import sys
 
 import numpy as np
 import pytest
-from exported_models import SECTION, TURN, VARIABLE, H, arm, with_law
+from exported_models import VARIABLE, H, arm
 from helpers import multipliers_first
+from readings import TABLE
 
 import sebody.assembly.build as assembly
 from sebody import (
@@ -23,8 +24,6 @@ from sebody import (
 )
 from sebody.export import export, objects, toolchain
 from sebody.export.platforms import host
-from sebody.fem import straight_beam
-from sebody.reduction import reduce
 from sebody.scenes import chain
 
 pytest.importorskip("ziglang", reason="exports are linked by the package ziglang")
@@ -97,30 +96,26 @@ def test_variable_steps_are_the_same_bit_for_bit(tmp_path):
     assert (folder / "rows").read_bytes() == run.result().rows[1:].tobytes()
 
 
-def test_loads_with_close_rows_are_the_same_bit_for_bit(tmp_path):
-    """Their impulse is that of the table."""
-    model = Model(planar=True)
-    model.node("hub", (0.3, -0.2))
-    model.rigid_body("wheel", "hub", 1.0, 2.0)
-    model.revolute("hub", name="pin")
-    model.torque("hub", 1.0, [(0, 1.0), (0.5, 1.0), (0.500001, -1.0), (1.0, -1.0), (1.000001, 0)])
-    folder = export(model, 0.01, library=tmp_path / "wheel", name="wheel", outputs=["pin.rate"],
-                    processor="native")
-    compiled_example(folder, "wheel")
-    called(folder, STEPS, tmp_path / "rows")
-    result = simulate(model, 0.01, STEPS * 0.01)
-    assert result["pin.rate"][-1] == pytest.approx(2.5e-7, abs=1e-12)
+@pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
+@pytest.mark.parametrize("name", [name for name, row in TABLE.items() if row.exported])
+def test_models_of_many_kinds_are_the_same_bit_for_bit(name, tmp_path):
+    """Continuous laws, motions without mass, jumps between close rows of a table."""
+    row = TABLE[name]
+    folder = export(row.build(), row.h, library=tmp_path / "made", name="made",
+                    processor="native", outputs=[row.followed])
+    compiled_example(folder, "made")
+    called(folder, round(row.end / row.h), tmp_path / "rows")
+    result = simulate(row.build(), row.h, row.end)
+    assert np.ptp(result[row.followed], axis=0).max() > 0.0
     assert (tmp_path / "rows").read_bytes() == result.rows[1:].tobytes()
 
 
-def test_continuous_laws_are_called_without_addresses_of_this_process(tmp_path):
-    folder = export(with_law(), H, library=tmp_path / "law", name="law", outputs=["law.states"],
-                    processor="native")
-    compiled_example(folder, "law")
-    called(folder, STEPS, tmp_path / "rows")
-    result = simulate(with_law(), H, STEPS * H)
-    assert np.ptp(result["law.states"]) > 0.01
-    assert (tmp_path / "rows").read_bytes() == result.rows[1:].tobytes()
+@pytest.mark.parametrize("name", [name for name, row in TABLE.items() if "C" in row.refused])
+def test_models_that_cannot_be_exported_are_refused(name, tmp_path):
+    row = TABLE[name]
+    with pytest.raises(InputError, match=row.refused["C"]):
+        export(row.build(), row.h, library=tmp_path / "x", processor="native")
+    assert not list(tmp_path.iterdir())
 
 
 def loaded(folder, name):
@@ -155,24 +150,6 @@ def test_matrices_with_row_exchanges_are_the_same_bit_for_bit(index, monkeypatch
     for one in (first, second):
         call("free", one)
     assert rows.tobytes() == own.tobytes() and again.tobytes() == own[half:].tobytes()
-
-
-def test_motions_without_mass_are_the_same_bit_for_bit(tmp_path):
-    """MacNeal's body has stiffness without mass: least squares where its load jumps."""
-    start, end = TURN @ (0.1, 0.2, 0.3), TURN @ (0.9, 0.2, 0.4)
-    model = Model()
-    body = reduce(straight_beam(start, end, SECTION, elements=6), [(0, "full"), (6, "full")], 4,
-                  "macneal")
-    ends = model.node("a", start), model.node("b", end)
-    model.superelement("bar", body, ends, inertia="rigid_part", stiffening=False)
-    model.fix("a")
-    model.force("b", (0.3, -1.0, 0.8), [(0.0, 0.2), (0.05, 0.2), (0.05, 1.0), (1.0, 1.0)])
-    folder = export(model, 1e-3, library=tmp_path / "bar", name="bar", processor="native")
-    compiled_example(folder, "bar")
-    called(folder, 100, folder / "rows")
-    run = Simulation(model, 1e-3).run_to(0.1)
-    assert run.system.massless[0] == 1 and np.ptp(run.result()["b.position"]) > 0.0
-    assert (folder / "rows").read_bytes() == run.result().rows[1:].tobytes()
 
 
 BAD = {

@@ -127,7 +127,7 @@ def test_changes_below_what_the_step_changes_are_marked():
 
 def test_a_rigid_start_fits_the_joints():
     """Given velocities stay: the flexible coupler hides that all others have to move, too."""
-    model = scenes.four_bar(flexible=True)
+    model = scenes.four_bar(3)
     found = contributions(model, 0.002, 0.1, "c.velocity")
     run = simulate(rigid(model, "coupler").model, 0.002, 0.1, scheme=SCHEME)
     assert np.allclose(found.values["c.velocity"][0] + found.history(

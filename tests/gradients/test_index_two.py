@@ -3,9 +3,10 @@
 import differentiated as scenes
 import numpy as np
 import pytest
+from readings import TABLE
 
 from sebody import InputError, LimitWarning, Model, Simulation, Tolerance
-from sebody.analysis import calibrate, contributions, final, gradient, integral
+from sebody.analysis import calibrate, contributions, final, gradient
 from sebody.contract.layout import ACCELERATION, OK, RESIDUAL
 from sebody.engine.evaluate import assemble
 from sebody.engine.links import place_dependent
@@ -21,28 +22,17 @@ from sebody.runs.schemes import generalized_alpha
 
 INDEX_2 = generalized_alpha(tolerance=1e-13, index=2)
 pytestmark = pytest.mark.filterwarnings("ignore::sebody.LimitWarning")
-# of each scene: what builds it, step and end, objectives, parameters, and the largest difference
-# from differences of runs, of the largest in a row
-SCENES = {
-    "redundant loop": (scenes.four_bar, 0.005, 0.05, {
-        "c": final("c.position"), "v": integral("c.velocity.x")}, [
-        "coil.rest", "rocker.mass", "torque.amplitude"], 1e-5),
-    "jumps of loads": (scenes.struck, 0.01, 0.2, {
-        "b": final("b.position"), "end": final("end.velocity")}, [
-        "gust.amplitude", "kick.table", "lower.mass", "gravity"], 1e-4),
-    "joints": (scenes.joined, 0.005, 0.1, {
-        "ball": final("d.position"), "c": final("c.velocity")}, [
-        "upper.mass", "ball.mass", "torque.table"], 1e-4),
-    "driven rotor": (scenes.driven, 0.005, 0.05, {"slide": final("slide.velocity")}, [
-        "motor.amplitude", "rotor.mass", "spring.stiffness"], 1e-4)}
+# of models of the table: the end of the run, and the largest difference from differences of runs
+SCENES = {"redundant loop": (0.05, 1e-5), "jumps of loads": (0.2, 1e-4), "joints": (0.1, 1e-4),
+          "driven rotor": (0.05, 1e-4)}
 # where nothing is shifted, or shifts have one direction, the derivatives are exact
-EXACT = {
-    "moved base": (scenes.moved, 0.005, 0.1, {"end": final("end.velocity")}, [
-        "shake.amplitude", "swing.amplitude", "ball.mass"]),
-    "moved in a plane": (scenes.lifted, 0.005, 0.1, {"tip": final("b.velocity")}, [
-        "lift.amplitude", "swing.amplitude", "ball.mass", "beam.damping"]),
-    "a start that is a parameter": (scenes.thrown, 0.005, 0.1, {
-        "end": integral("end.acceleration")}, ["a.velocity", "a.position", "top.mass"])}
+EXACT = "moved base", "moved in a plane", "a start that is a parameter"
+
+
+def asked(name):
+    """Builder, step, objectives and parameters of a model of the table."""
+    row = TABLE[name]
+    return row.build, row.h, row.objectives, row.parameters
 
 
 def apart(one, other):
@@ -59,7 +49,7 @@ def both(model, *run, **others):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_what_differences_of_runs_tell_beside_falls_as_the_square_of_the_step(name):
-    build, h, t_end, *run, most = SCENES[name]
+    (t_end, most), (build, h, *run) = SCENES[name], asked(name)
     found = []
     for step in (h, h / 4):     # shifts depend on how many corrections steps take
         one, unequal = both(build(), step, t_end, *run)
@@ -88,7 +78,8 @@ def test_rates_of_constraints_change_along_a_motion_as_kernels_of_second_rates_s
 
 @pytest.mark.parametrize("name", EXACT)
 def test_what_has_no_shifts_that_turn_is_exact(name):
-    build, *run = EXACT[name]
+    build, h, *run = asked(name)
+    run = h, TABLE[name].end, *run
     one, unequal = both(build(), *run)
     assert unequal < 1e-12
     assert apart(one.matrix, scenes.differences(build(), *run, scheme=INDEX_2)) < 1e-8
@@ -113,7 +104,7 @@ def end_of(model, h, t_end, tolerance, steps, quantity):
     ("jumps of loads", "end.velocity", 2e-5), ("driven rotor", "slide.velocity", 2e-6)])
 def test_variable_steps_against_runs_that_take_the_same(name, quantity, most):
     """Tables that jump off the grid, drives, links: starts and restarts that look ahead."""
-    build, h, t_end, _, names, _ = SCENES[name]
+    t_end, (build, h, _, names) = SCENES[name][0], asked(name)
     model, tolerance = build(), Tolerance(1e-5)
     history = Differentiated(model, h, t_end, INDEX_2, tolerance).history
     steps = history.steps[history.kinds == STEP]
@@ -135,7 +126,7 @@ def test_variable_steps_against_runs_that_take_the_same(name, quantity, most):
 
 
 def test_segments_that_end_at_restarts(monkeypatch):
-    build, h, t_end, *run, _ = SCENES["jumps of loads"]
+    t_end, (build, h, *run) = 0.2, asked("jumps of loads")
     whole = gradient(build(), h, t_end, *run, scheme=INDEX_2)
     row = Differentiated(build(), h, h, INDEX_2).history.rows[0]
     monkeypatch.setattr(segments, "STATES", 10 * row.nbytes)    # the first restart is number 10
@@ -155,7 +146,7 @@ def test_a_sparse_chain():
 
 
 def test_measurements_are_fitted():
-    build, h, t_end, *_ = SCENES["joints"]
+    t_end, (build, h, *_) = 0.1, asked("joints")
     model = build()
     spring = columns_of(model, ["spring.stiffness"])[0].handle
     spring.set(np.array(44.0))
@@ -168,7 +159,7 @@ def test_measurements_are_fitted():
 
 @pytest.mark.filterwarnings("error")
 def test_it_is_said_how_good_the_derivatives_are():
-    build, h, t_end, *run, _ = SCENES["joints"]
+    build, h, *run = asked("joints")
     with pytest.warns(LimitWarning, match="index 2.*halve the step.*index=3.*exact"):
         gradient(build(), h, h, *run, scheme=INDEX_2)
     with pytest.warns(LimitWarning, match="divide the tolerance"):

@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, LimitWarning, Model, Simulation, generalized_alpha, simulate
-from sebody.analysis import equilibrium, modes, resume, save_state, vibrations
+from sebody.analysis import equilibrium, modes, vibrations
 from sebody.fem import StiffnessSection, hexahedral_block, planar_beam, straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes import hinged_beam, planar_hinged_beam
@@ -198,14 +198,6 @@ def test_a_plane_and_space_agree():
                        for build, m in ((planar_hinged_beam.build, 2), (hinged_beam.build, 4)))
     # Newton's tolerance
     assert np.abs(planar - spatial[:, :2]).max() < 1e-5 * np.abs(planar).max()
-
-
-def test_restart(tmp_path):
-    def build():
-        return hinged_beam.build(inertia="rigid_part").model
-    whole = Simulation(build(), 0.01).run_to(1.0).run_to(2.0).result()
-    path = save_state(Simulation(build(), 0.01).run_to(1.0), tmp_path / "half.npz")
-    assert np.array_equal(resume(build(), path).run_to(2.0).result().rows, whole.rows)
 
 
 @pytest.mark.parametrize("frame", ["mean", "mean_small"])
