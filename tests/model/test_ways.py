@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from model.test_paths import SHIFT, TURN
 
-from sebody import InputError, LimitWarning, Model, Simulation, simulate
+from sebody import InputError, LimitWarning, Model, Simulation, generalized_alpha, simulate
 from sebody.analysis import (
     Ensemble,
     campbell,
@@ -99,7 +99,7 @@ def test_a_controller_holds_a_way(period):
     assert simulate(model, 2e-3, 2.0)["runs.way"][-1] == pytest.approx(held, abs=1e-6)
 
 
-def swinging(bodies=1, flat=True, turned=None, modes=4, **rub):
+def swinging(bodies=1, flat=True, turned=None, modes=4, coefficient=0.2, **rub):
     """An arm that falls on its hinge, with a slider on it that rubs."""
     turned = np.eye(3) if turned is None else turned
 
@@ -119,7 +119,7 @@ def swinging(bodies=1, flat=True, turned=None, modes=4, **rub):
     model.gravity(field[:2] if flat else turned @ field)
     model.path("rail", on="arm", ends="straight")
     model.path_joint(car, "rail", name="runs")
-    model.friction("runs", 0.2, name="rub", **rub)
+    model.friction("runs", coefficient, name="rub", **rub)
     return model
 
 
@@ -128,6 +128,14 @@ def _internal(model):
     body = model.bodies["arm"].reduced
     own = slice(len(body.stiffness) - body.modes, None)
     return np.diag(body.stiffness)[own] / np.diag(body.mass)[own]
+
+
+def _out_of_balance(coefficient, h, rho=0.9):
+    """Energy of the swinging arm less its start and the work of friction."""
+    model = swinging(coefficient=coefficient)
+    result = simulate(model, h, 0.3, generalized_alpha(rho, index=2))
+    energy = sum(result[f"energy.{one}"] for one in ("kinetic", "strain", "potential"))
+    return energy - energy[0] - result["rub.work"]
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -140,6 +148,10 @@ def test_work_of_friction_is_energy_lost():
         left.append(np.abs(energy - energy[0] - result["rub.work"]).max())
     assert result["rub.work"][-1] < -0.01
     assert left[1] < 3e-5 and left[1] < left[0] / 3
+    # what friction adds to what the scheme loses of the energy without it
+    own = [_out_of_balance(coefficient, 5e-4) for coefficient in (0.2, 0.0)]
+    assert np.abs(own[0] - own[1]).max() < 1e-5 * np.ptp(energy) < np.abs(own[1]).max()
+    assert np.abs(_out_of_balance(0.2, 8e-5, 1.0)).max() < 1e-5 * np.ptp(energy)
     force, normal = result["runs.thrust"], result["runs.normal_force"]
     slides = np.abs(result["runs.rate"]) > 0.05
     assert slides.sum() > 100
