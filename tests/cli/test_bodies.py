@@ -58,9 +58,24 @@ def test_paths(tmp_path, capsys):
         made.recovery.nodes, made.paths["rail"])].tolist() == rail[::-1]
     assert len(made.recovery.nodes) == 4 and not made.recovery.cells
     assert main([*command, "--path", "RAIL"]) == 0 and load_body(body).modes == 4
+    enough, found = ["--accuracy", "1e-2", "--up-to", "8"], []
+    for options in (enough, [*enough, "--path", "RAIL:z:2", "--lean"], ["--path", "RAIL", *enough],
+                    [*enough, "--path", "RAIL:2", "--criterion", "frequencies"]):
+        assert main([*command, *options]) == 0
+        found.append(load_body(body))
+        assert "within" in capsys.readouterr().out
+    bare, lean, full, few = found       # loads on the path are beside the modes, and keep these
+    assert bare.modes + 2 == lean.modes == full.modes - 2 and few.modes < full.modes
+    assert lean.recovery.nodes.tolist() == sorted(lean.paths["RAIL"])
+    inside = slice(12, 12 + bare.modes)
+    for one in (lean, full):
+        assert one.stiffness[inside, inside] == pytest.approx(bare.stiffness[inside, inside])
     body.unlink()
     capsys.readouterr()
     for options, told in (
+            ([*enough, "--path", "RAIL", "--modes", "2"], "--accuracy chooses the number of modes"),
+            ([*enough, "--path", "RAIL", "--method", "rubin"], "paths are for methods"),
+            ([*enough, "--path", "RAIL", "--method", "guyan"], "method 'guyan' has none"),
             (["--path", "RAIL:w"], "path is 'RAIL:w': write the name of a node set, SET:x"),
             (["--path", "RAIL:z:0"], "path 'RAIL': number of loads is 0"),
             (["--path", "RIAL"], "path 'RIAL': node set 'RIAL' is unknown: known are"),
