@@ -1,0 +1,26 @@
+"""Rows of points on paths against differences, closer than `sebody check` asks of all kernels."""
+
+import pytest
+
+from sebody.kernels.loader import load
+from sebody.verify.check.elements import joint_acceleration, joint_force, joint_velocity
+from sebody.verify.check.paths import body_path_case
+from sebody.verify.check.superelement_cases import nodes_of
+
+FRAMES = "converged_mean", "mean_axes", "positions"
+
+
+@pytest.mark.parametrize("plane", ["", "planar_"])
+@pytest.mark.parametrize("frame", FRAMES)
+def test_rows_agree_with_differences(plane, frame):
+    """Of a body that has all of the path, in even states, and of one that hands over to the next.
+
+    Differences of order six are off by their step to the sixth power, 1e-9 at most in these states,
+    and by rounding over its square.
+    """
+    module = load(f"element_{plane}body_path_{frame}")
+    for nodes in nodes_of(module)[:2]:
+        for seed in range(2):
+            case = body_path_case(module, seed, nodes)
+            for measure in (joint_force, joint_velocity, joint_acceleration):
+                assert measure(case) < 1e-9, (nodes, seed, measure.__name__)
