@@ -17,7 +17,14 @@ from sebody.derive.kernels.law_products import products_law
 from sebody.derive.kernels.layouts import Layout
 from sebody.derive.kernels.linearize import linearized
 from sebody.derive.kernels.motion import MOTIONS, frame_motion, motion_form
-from sebody.derive.kernels.path import PATH_LOADS, PATH_TURNS, PATHS, path_kernel, path_load_kernel
+from sebody.derive.kernels.path import (
+    PATH_ACROSS,
+    PATH_LOADS,
+    PATH_TURNS,
+    PATHS,
+    path_kernel,
+    path_load_kernel,
+)
 from sebody.derive.kernels.path_form import path_form, path_load_form
 from sebody.derive.kernels.products import products_body_load, products_superelement
 from sebody.derive.kernels.superelement import superelement
@@ -122,7 +129,7 @@ def stages_of(kernel: Variant | Products | str) -> Stages:
         return SUPERELEMENT
     if kernel in BODY_CONTACTS:
         return BODY_CONTACT
-    if kernel in PATHS or kernel in PATH_TURNS:
+    if kernel in PATHS or kernel in PATH_TURNS or kernel in PATH_ACROSS:
         return BODY_PATH
     if kernel in PATH_LOADS:
         return PATH_LOAD

@@ -126,6 +126,9 @@ PLANAR_FIT = _function("frame_search", "planar_fit", Gives.STATUS, count=WHOLE, 
 PATH_PLACE = _function("paths", "path_place", Gives.STATUS, path=READ, s=REAL, y=READ,
                        n=WHOLE, dimension=WHOLE, head=WRITE, shapes=WRITE, slopes=WRITE,
                        bends=WRITE)
+PATH_DIRECTION = _function("paths", "path_direction", Gives.STATUS, path=READ, s=REAL, y=READ,
+                           n=WHOLE, head=WRITE, shapes=WRITE, slopes=WRITE, bends=WRITE,
+                           section=WRITE)
 PATH_LOADS = _function("paths", "path_loads", path=READ, s=REAL, y=READ, n=WHOLE, dimension=WHOLE,
                        head=WRITE, shapes=WRITE, slopes=SCRATCH, bends=WRITE, head_1=SCRATCH,
                        shapes_1=SCRATCH, bends_1=SCRATCH)

@@ -17,7 +17,7 @@ from sebody.derive.kernels.catalogue import (
 )
 from sebody.derive.kernels.motion import MOTIONS
 from sebody.derive.kernels.options import frame_traits
-from sebody.derive.kernels.path import PATH_LOADS, PATH_TURNS, PATHS
+from sebody.derive.kernels.path import PATH_ACROSS, PATH_LOADS, PATH_TURNS, PATHS
 
 
 def _lasts(frame: str) -> bool:
@@ -70,7 +70,8 @@ SUPERELEMENTS = (
     ("planar-any", "converged_mean", "rigid_part"),
     ("planar-any", "positions", "rigid_part"),
 )
-ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *PATHS, *PATH_TURNS, *PATH_LOADS, *MOTIONS)
+ELEMENTS = (*CATALOGUE, *BODY_LOADS, *BODY_CONTACTS, *PATHS, *PATH_TURNS, *PATH_ACROSS,
+            *PATH_LOADS, *MOTIONS)
 
 # long kernels of rare elements: gradients of runs with these take matrices in place of products
 UNSHIPPED = "bearing", "planar_bearing"

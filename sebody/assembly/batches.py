@@ -243,8 +243,10 @@ def _element_constants(element: Element, kernel: ModuleType) -> NDArray:
 def _path_constants(element: Element, kernel: ModuleType) -> NDArray:
     """The row of constants on a path: what places the frame, forces that move, and the path."""
     assert element.path is not None
-    own = dict(element.constants)
-    path = path_numbers(element.path.path, element.path.piece, "axles" in own, element.path.turns)
+    own, on = dict(element.constants), element.path
+    path = path_numbers(on.path, on.piece, "axles" in own, on.turns)
+    if on.section is not None:
+        path = np.concatenate([path, on.section.ravel()])
     if "axles" in own:
         axles = np.asarray(own.pop("axles"))
         path = np.concatenate([path, [len(axles)], axles.ravel()])
@@ -268,7 +270,7 @@ def _matrices(numbering: Numbering, element: Element) -> list[int]:
     """Numbers of the rotation matrices; on planar bodies angles are counted by zeros."""
     if element.body is not None or any(element.carried):
         blocks = element.dof_blocks
-        if element.path is not None:        # the angle of a node behind the body is an unknown
+        if element.path is not None and element.path.section is None:  # an angle is an unknown
             blocks = blocks[:element.carried[0]]
         return [numbering.rotations.get(t, 0) for t in blocks if t.rotational]
     return [numbering.rotations[t] for t in element.dof_blocks if t in numbering.rotations]

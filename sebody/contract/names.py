@@ -32,9 +32,14 @@ def path_kind(frame: str, planar: bool) -> str:
     return IN_PLANE * planar + f"body_path_{frame}"
 
 
-def path_turn_kind(frame: str) -> str:
-    """Kind of a node that turns with a path of a body with this frame, in a plane."""
-    return IN_PLANE + f"path_turn_{frame}"
+def path_turn_kind(frame: str, planar: bool) -> str:
+    """Kind of a node that turns with a path of a body with this frame."""
+    return IN_PLANE * planar + f"path_turn_{frame}"
+
+
+def path_across_kind(frame: str) -> str:
+    """Kind of a point that a path of a body with this frame holds in one direction, in space."""
+    return f"path_across_{frame}"
 
 
 def path_load_kind(frame: str, planar: bool) -> str:

@@ -3,20 +3,21 @@
 The numbers of a path are a row of constants, see `sebody.model.path_tables`:
 
     knots K, followers m, offset of the way, four edges of the weight, first and last way allowed,
+    1 or 0: beyond the ends rows go straight on or stay,
     K ways of the knots, ascending,
     of every knot the rows ``X, Phi_y, Phi_eta`` and their slopes, D numbers each,
     m symmetric matrices Q_b, (n, n)
 
 The point in the frame of the body is ``r = X + Phi_y y + Phi_eta eta`` with the followers
-``eta_b = y . Q_b y / 2``. Beyond the ends the path is straight. The weight rises from 0 to 1
-between the first two edges and falls between the last two, twice differentiable, or at once where
-two edges are the same.
+``eta_b = y . Q_b y / 2``. Beyond the ends the path is straight: points go on and angles stay. The
+weight rises from 0 to 1 between the first two edges and falls between the last two, twice
+differentiable, or at once where two edges are the same.
 """
 
 from sebody.compiler.decorators import compiled
 from sebody.contract.layout import OFF_PATH, OK
 
-HEAD = 9            # numbers before the knots
+HEAD = 10           # numbers before the knots
 # places in the head, what `path_place` finds: the point r and its derivatives by the way, the
 # weight of the body and its derivatives; then the weights of four numbers in a cubic, likewise
 ARM, SLOPE, BEND, WEIGHT, CUBIC = 0, 3, 6, 9, 12
@@ -49,7 +50,7 @@ def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
     knots, followers, way = int(path[0]), int(path[1]), s - path[2]
     _set_weight(path, way, head)
     k = _interval(path, way)
-    _set_cubics(path, way, k, head)
+    _set_cubics(path, way, k, path[9], head)
     size = dimension * (1 + n + followers)
     first = HEAD + knots + 2 * size * k
     for c in range(dimension):
@@ -75,6 +76,28 @@ def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
                 shapes[dimension * k + c] += bends[dimension * b + c] * moved
                 slopes[dimension * k + c] += _row(path, at + c, size, head, 1) * moved
         _add(path, at, size, dimension, eta, head)
+    return OK
+
+
+@compiled
+def path_direction(path, s, y, n, head, shapes, slopes, bends, section):
+    """Point, or rotation of the section, of a path in space at a way, and a direction of this path.
+
+    Behind the rows of `path_place` stand, of every knot, the direction in the undeformed body and
+    its slope, 3 numbers each; beyond the ends the direction stays. `section` is written: the
+    direction at the way and its two derivatives by the way.
+    """
+    status = path_place(path, s, y, n, 3, head, shapes, slopes, bends)
+    if status != OK:
+        return status
+    knots, followers = int(path[0]), int(path[1])
+    rows = HEAD + knots + 6 * (1 + n + followers) * knots + followers * n * n
+    k = _interval(path, s - path[2])
+    first = rows + 6 * k
+    _set_cubics(path, s - path[2], k, 0.0, head)
+    for derivative in range(3):
+        for c in range(3):
+            section[3 * derivative + c] = _row(path, first + c, 3, head, derivative)
     return OK
 
 
@@ -145,18 +168,21 @@ def _interval(path, way):
 
 
 @compiled
-def _set_cubics(path, way, k, head):
-    """Weights of value and slope at both knots of an interval: of the place and its derivatives."""
+def _set_cubics(path, way, k, straight, head):
+    """Weights of value and slope at both knots of an interval: of the place and its derivatives.
+
+    Beyond the ends rows go straight on, or stay with `straight` zero.
+    """
     h = path[HEAD + k + 1] - path[HEAD + k]
     u = (way - path[HEAD + k]) / h
     for i in range(12):
         head[CUBIC + i] = 0.0
     if u < 0.0:
-        head[CUBIC], head[CUBIC + 1], head[CUBIC + 5] = 1.0, u * h, 1.0
+        head[CUBIC], head[CUBIC + 1], head[CUBIC + 5] = 1.0, straight * u * h, straight
         return
     w = 1.0 - u
     if w < 0.0:
-        head[CUBIC + 2], head[CUBIC + 3], head[CUBIC + 7] = 1.0, -w * h, 1.0
+        head[CUBIC + 2], head[CUBIC + 3], head[CUBIC + 7] = 1.0, -straight * w * h, straight
         return
     head[CUBIC], head[CUBIC + 1] = w * w * (1.0 + 2.0 * u), u * w * w * h
     head[CUBIC + 2], head[CUBIC + 3] = u * u * (3.0 - 2.0 * u), -u * u * w * h

@@ -126,6 +126,10 @@ def friction(model: Mechanism, joint: Joint | str, coefficient: float, static: f
         del constants["radius"], constants["per_moment"]
         constants["reads"] = float(reads)
     parts = _parts(model, joint, sliding, what)
+    if reads and any(one.path and one.path.section is not None and not one.path.turns
+                     for one in joint.constraints):
+        raise InputError(f"{what}: the path leaves the node of joint {joint.name!r} free across, "
+                         "so friction does not read its force: give reaction=False and preload=")
     kind = KERNELS[joint.kind, model.planar] if reads else _plain(joint, sliding, what)
     if takes is not None or kind in BEARINGS:
         constants |= _taken(what, joint, kind, takes)

@@ -225,12 +225,14 @@ class OnPath(NamedTuple):
     """What makes an element of a point on a path, or of forces: one for each piece.
 
     Elements of a point share its equations, and those of a node that turns with the path theirs.
+    In space one of these keeps a direction of the node across one of the path's section.
     """
 
     path: Path
     piece: int
     way: DofBlock | None    # hidden: how far along the path the point is; none of forces
     turns: bool = False     # with the tangent of the path, apart from being on it
+    section: NDArray | None = None  # in space: this direction and its slope at knots, (K, 2, 3)
 
     @property
     def here(self) -> PathPiece:

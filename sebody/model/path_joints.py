@@ -6,33 +6,28 @@ from collections.abc import Callable
 from typing import Unpack
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
-from sebody.contract.names import path_kind, path_turn_kind
 from sebody.model import motions
 from sebody.model.acting import Acting
 from sebody.model.arguments import chosen_name, dof_block, known, known_joint
 from sebody.model.extent import extent
-from sebody.model.frames import FRAMES
 from sebody.model.histories import Source
 from sebody.model.joint_equations import named
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import (
-    Attachment,
     DofBlock,
     Element,
     Joint,
     Motion,
     Node,
-    OnPath,
     Path,
-    Superelement,
-    positions,
-    rotations,
 )
-from sebody.model.path_tables import angle_at, curve, rotations_of
+from sebody.model.path_equations import holding
+from sebody.model.path_tables import curve, piece_at
+from sebody.model.path_turns import check_turns, turning
 from sebody.model.paths import known_path
 
 PATH = "path"       # kind of these joints
@@ -42,6 +37,7 @@ SAMPLES = 8         # places in each interval between knots from which the neare
 
 
 def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str | None = None,
+               axis: ArrayLike | None = None, across: ArrayLike | None = None,
                start: float | None = None, rate: float | None = None, inertia: float = 0.0,
                name: str | None = None, **acting: Unpack[Acting]) -> Joint:
     """Point that stays on a path: `node` slides along flexible bodies, and turns freely or not.
@@ -58,10 +54,18 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
     path : Path or str
         Of `path`.
     turns : {"with"}, optional
-        In a plane: the node turns with the tangent of the path, to which it keeps the angle that it
-        has at the start, by one more equation. The moment that this takes is in ``<name>.moment``;
-        it pushes the node along the path by itself times the curvature. By default the node turns
-        freely.
+        The node turns with the path and keeps the orientation to it that it has at the start: in a
+        plane to the tangent, by one more equation, in space to the section of the deformed body,
+        by three. The moment that this takes is in ``<name>.moment``; it pushes the node along the
+        path by itself times the curvature. By default the node turns freely.
+    axis : (3,) array_like or {"x", "y", "z"}, optional
+        In space, with `turns`: direction at the start, global axes, about which the node turns
+        freely: two more equations keep this axis of the node along that of the section.
+    across : {"free"} or (3,) array_like or {"x", "y", "z"}, optional
+        In space: the path leaves the node free in one direction across, as a wheel without flanges
+        does, and holds it along its tangent and the other normal, those of the undeformed path in
+        axes of the body's frame. ``"free"`` is level, normal to the path and to the z axis; else
+        the direction at the start, global axes. By default the path holds the node all around.
     start : float, optional
         The way at the start [length]; by default that of the nearest place. Give it where the path
         comes by the same place twice.
@@ -80,11 +84,13 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
     ------
     InputError
         A node off the path or of one of its bodies, a path of another model, a start beyond its
-        ends, or a node that is to turn with a path in space or of FE nodes without rotations.
+        ends, a node that is to turn with FE nodes without rotations, an axis in a plane, or a
+        direction across that is along the path.
 
     Examples
     --------
     >>> runs = model.path_joint("trolley", rail, name="runs")
+    >>> sledge = model.path_joint("sledge", rail, turns="with")
     """
     a = known(model, node)
     what = f"path joint at {a.name!r}"
@@ -103,25 +109,16 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
                              f"which path {on.name!r} goes along: give a node of its own at this "
                              "place")
     wheels = inputs.number(inertia, f"{what}: inertia", least=0)
-    if turns is not None:
-        _check_turns(model, what, a, on, turns)
+    check_turns(model, what, a, on, turns, axis)
     begins = _start(model, what, a, on, start)
     name = named(model, name, PATH, a)
     way = DofBlock(f"{name}.way", np.array([begins]), np.zeros(1))
     if rate is not None:
         way.rate, way.given = np.array([inputs.number(rate, f"{what}: rate")]), True
     hidden = Node(way.name, np.zeros(0), way, None)     # in no table of the model
-    equations: list[Element] = []
-    for k, piece in enumerate(on.pieces):
-        carrier = piece.carrier
-        frame = "converged_mean" if isinstance(carrier, Node) else FRAMES[carrier.frame].kernel
-        equations.append(Element(
-            name, path_kind(frame, model.planar),
-            piece.attachments + positions(a) + (Attachment(hidden, "position"),), {},
-            0 if equations else model.dimension, path=OnPath(on, k, way),
-            shares=equations[0] if equations else None))
+    equations = holding(model, what, name, a, on, way, hidden, across)
     if turns is not None:
-        equations += _turning(name, a, on, way, hidden)
+        equations += turning(model, name, a, on, way, hidden, axis)
     carrier = on.pieces[0].carrier
     to = carrier if isinstance(carrier, Node) else carrier.nodes[carrier.reduced.position_nodes[0]]
     joint = Joint(name, tuple(equations), a, to, None, PATH)
@@ -137,49 +134,6 @@ def path_joint(model: Mechanism, node: Node | str, path: Path | str, turns: str 
             chosen_name(model, None, f"ends of {name}"), "way_stop",
             joint.constraints[0].attachments[-1:], {**on.buffers, "lower": low, "upper": high}))
     return joint
-
-
-def _check_turns(model: Mechanism, what: str, a: Node, path: Path, turns: object) -> None:
-    """Refuse a node that cannot turn with a path.
-
-    Raises
-    ------
-    InputError
-        In space, a node without a rotation or on which a body of the path turns, or FE nodes
-        without rotations.
-    """
-    inputs.choice(turns, f"{what}: turns", ("with",))
-    if not model.planar:
-        raise InputError(f"{what}: turns='with' is of models in a plane: leave it out, and put the "
-                         "node on two wheels that are attached to it, with a path_joint each")
-    rotation = dof_block(a, "rotation")
-    for piece in path.pieces:
-        if any(one.dof_block is rotation for one in piece.attachments):
-            raise InputError(f"{what}: turns='with', but the node turns as a node of "
-                             f"{piece.carrier.name!r} does, which carries path {path.name!r}: "
-                             "leave turns= out, or give a node of its own")
-        if isinstance(piece.carrier, Superelement) and not rotations_of(piece).size:
-            raise InputError(f"{what}: turns='with', but FE nodes of superelement "
-                             f"{piece.carrier.name!r} have no rotations: leave turns= out, and put "
-                             "the node on two wheels that are attached to it, with a path_joint "
-                             "each")
-
-
-def _turning(name: str, a: Node, path: Path, way: DofBlock, hidden: Node) -> list[Element]:
-    """Elements of a node that turns with a path, of one equation."""
-    at = float(way.start[0])
-    on = _piece_at(path, at)
-    held = angle_at(path, on, at - path.pieces[on].offset)
-    equations: list[Element] = []
-    for k, piece in enumerate(path.pieces):
-        carrier = piece.carrier
-        frame = "converged_mean" if isinstance(carrier, Node) else FRAMES[carrier.frame].kernel
-        equations.append(Element(
-            name, path_turn_kind(frame),
-            piece.attachments + rotations(a) + (Attachment(hidden, "position"),),
-            {"held": held}, 0 if equations else 1,
-            path=OnPath(path, k, way, True), shares=equations[0] if equations else None))
-    return equations
 
 
 def drive_way(model: Mechanism, joint: Joint | str, motion: Source, name: str | None = None
@@ -257,17 +211,12 @@ def _start(model: Mechanism, what: str, a: Node, path: Path, start: float | None
 
 def place_at(path: Path, way: float) -> NDArray:
     """The place on a path at the start, global axes; straight on beyond its ends."""
-    k = _piece_at(path, way)
+    k = piece_at(path, way)
     piece, of = path.pieces[k], curve(path, k)
     local = way - piece.offset
     inside = float(np.clip(local, 0.0, piece.ways[-1]))
     place: NDArray = of(inside) + (local - inside) * of(inside, 1)
     return place
-
-
-def _piece_at(path: Path, way: float) -> int:
-    """Number of the piece of a path at a way; beyond its ends of the outer one."""
-    return max(sum(way >= piece.offset for piece in path.pieces) - 1, 0)
 
 
 def _nearest(path: Path, point: NDArray) -> float:

@@ -26,22 +26,23 @@ class Rows(NamedTuple):
     followers: NDArray      # matrices Q_b, (m, n, n)
 
 
-def path_numbers(path: Path, k: int, forces: bool = False, angles: bool = False) -> NDArray:
+def path_numbers(path: Path, k: int, forces: bool = False, turns: bool = False) -> NDArray:
     """The row of constants of piece k of a path, see `sebody.kernels.paths`.
 
     Of `forces`: these act from end to end of a path alone, unless it goes on on the ground. Of
-    `angles`, in a plane: rows have the angle of the tangent in place of a point.
+    what `turns` rows have the angle of the tangent, or in space the rotation of the section, in
+    place of a point.
     """
     piece = path.pieces[k]
-    rows = angles_of(piece) if angles else rows_of(piece)
+    rows = rows_of(piece) if not turns else angles_of(piece) if planar(path) else turns_of(piece)
     margin = 0.0 if forces else MARGIN * path.length
     held = ("refuse", "straight", "stop") if forces else ("refuse",)
     low = -margin if path.ends[0] in held else -NO_EDGE
     high = path.length + margin if path.ends[1] in held else NO_EDGE
     both = np.stack([rows.values, rows.slopes], axis=1)
     return np.concatenate([[len(piece.ways), len(rows.followers), piece.offset],
-                           edges(path, k, path.blend), [low, high], piece.ways, both.ravel(),
-                           rows.followers.ravel()])
+                           edges(path, k, path.blend), [low, high, 0.0 if turns else 1.0],
+                           piece.ways, both.ravel(), rows.followers.ravel()])
 
 
 def edges(path: Path, k: int, blend: float) -> list[float]:
@@ -59,7 +60,7 @@ def rows_of(piece: PathPiece) -> Rows:
         n = piece.carrier_width
         shape = np.zeros((len(X), n, X.shape[1]))
         values = np.concatenate([X[:, None], shape], axis=1)
-        return Rows(values, _slopes(piece.ways, values, None), np.zeros((0, n, n)))
+        return Rows(values, hermite_slopes(piece.ways, values), np.zeros((0, n, n)))
     body = piece.carrier
     recovery = recovery_of(body)
     places, n = list(piece.places), len(body.reduced.stiffness)
@@ -69,8 +70,8 @@ def rows_of(piece: PathPiece) -> Rows:
     X = recovery.points[places] - body.alpha @ held_points(body)
     values = np.concatenate([X[:, None], Phi], axis=1)
     turned = rotations_of(piece)
-    along = _slopes(piece.ways, X[:, None], None)[:, 0]
-    return Rows(values, _slopes(piece.ways, values, _ends(along, turned)), followers)
+    along = hermite_slopes(piece.ways, X[:, None], None)[:, 0]
+    return Rows(values, hermite_slopes(piece.ways, values, _ends(along, turned)), followers)
 
 
 def angles_of(piece: PathPiece) -> Rows:
@@ -86,7 +87,23 @@ def angles_of(piece: PathPiece) -> Rows:
     else:
         turned, followers = rotations_of(piece), followers_of(piece.carrier)
     values = np.concatenate([start, turned], axis=1)
-    return Rows(values, _slopes(piece.ways, values, None), followers)
+    return Rows(values, hermite_slopes(piece.ways, values), followers)
+
+
+def turns_of(piece: PathPiece) -> Rows:
+    """Rows of the rotation of a section in space, in axes of its body: those of the FE nodes."""
+    if isinstance(piece.carrier, Node):
+        n = piece.carrier_width
+        turned, followers = np.zeros((len(piece.ways), n, 3)), np.zeros((0, n, n))
+    else:
+        turned, followers = rotations_of(piece), followers_of(piece.carrier)
+    values = np.concatenate([np.zeros((len(turned), 1, 3)), turned], axis=1)
+    return Rows(values, hermite_slopes(piece.ways, values), followers)
+
+
+def planar(path: Path) -> bool:
+    """Tell whether a path is one in a plane."""
+    return path.pieces[0].points.shape[1] == 2
 
 
 def rotations_of(piece: PathPiece) -> NDArray:
@@ -115,7 +132,7 @@ def _ends(along: NDArray, turned: NDArray) -> NDArray | None:
     return np.cross(turned, along[:, None])
 
 
-def _slopes(ways: NDArray, values: NDArray, turned: NDArray | None) -> NDArray:
+def hermite_slopes(ways: NDArray, values: NDArray, turned: NDArray | None = None) -> NDArray:
     """Slopes at the knots of a cubic spline, (K, 1 + N, D).
 
     Its ends turn as FE nodes do, where these have rotations. Two knots have no more than these;
@@ -141,6 +158,11 @@ def angle_at(path: Path, k: int, way: float) -> float:
     piece, rows = path.pieces[k], angles_of(path.pieces[k])
     of = CubicHermiteSpline(piece.ways, rows.values[:, 0, 0], rows.slopes[:, 0, 0])
     return float(of(np.clip(way, 0.0, piece.ways[-1])))
+
+
+def piece_at(path: Path, way: float) -> int:
+    """Number of the piece of a path at a way; beyond its ends of the outer one."""
+    return max(sum(way >= piece.offset for piece in path.pieces) - 1, 0)
 
 
 def curve(path: Path, k: int) -> CubicHermiteSpline:

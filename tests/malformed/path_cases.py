@@ -121,8 +121,11 @@ CASES = {
                  ("rail", "path joint at 'place': the node is"),
                  (_foreign_path(), "path 'curve' is of another model")],
         "turns": [("free", "path joint at 'place': turns 'free' is unknown: use 'with'"),
-                  (3, "turns 3 is unknown: use 'with'"), ("", "turns '' is unknown: use 'with'"),
-                  ("with", "path joint at 'place': turns='with' is of models in a plane")],
+                  (3, "turns 3 is unknown: use 'with'"), ("", "turns '' is unknown: use 'with'")],
+        "axis": have("path joint at 'place': axis is of a node that turns with the path: leave it "
+                     "out, or give turns='with'", "z", (1.0, 0.0, 0.0), 3),
+        "across": have("axis of the freedom across a path at 'place'", 3, "level", (1.0, 0.0),
+                       (0.0, 0.0, 0.0), (NAN, 0.0, 1.0)),
         "start": [*[pair for pair in are("path joint at 'place': start", *NO_NUMBER)
                     if pair[0] is not None],
                   (-1.0, "start is -1, beyond the ends of path 'curve', 0 and 2.4"),

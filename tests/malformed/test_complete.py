@@ -24,8 +24,8 @@ BUILDERS = [name for name, value in vars(Model).items()
 # refused by `planar(model)` by name: their planar kernels exist, the way from space is not written
 WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
 # on coordinates of a body, see variants/planar.py
-OF_BODIES = ("body_load_", "body_contact_", "body_path_", "path_turn_", "path_load_",
-             "mode_force", "friction_way", "way_")
+OF_BODIES = ("body_load_", "body_contact_", "body_path_", "path_turn_", "path_across_",
+             "path_load_", "mode_force", "friction_way", "way_")
 
 
 def variants(right):

@@ -93,19 +93,23 @@ def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
 def path_head(given: BodyPath, kernel: Kernel) -> Head:
     """Of a point on a path of a body, or a node that turns with it: any layout, one frame."""
     planar, turns = given.layout.planar, given.turns
-    size = 1 if turns else 2 if planar else 3
+    alone = turns or given.across
+    size = 1 if alone else 2 if planar else 3
+    node = "a position" if not turns else "an angle" if planar else "a rotation"
+    carriers = ("CARRIERS = 1         # nodes behind those of the body: that which turns",)
     return Head(
         "Element kernel: a node turns with a path of a body, at a way that is an unknown" if turns
         else "Element kernel: a point stays on a path of a body, at a way that is an unknown",
         (f"Any number of positions and rotations of {SPACES[planar]}; any number of internal "
          "modes.", f"Frame: {given.option.traits.summary}."),
         (f'FRAME = "{given.frame}"', *counts(planar, (None, None)),
-         "WAY = True         # behind those of the body: "
-         + ("an angle, a way, a multiplier" if turns else "a position, a way, multipliers"),
+         *(carriers if turns and not planar else ()),
+         f"WAY = True         # behind those of the body: {node}, a way, "
+         + ("a multiplier" if alone else "multipliers"),
          f"CONSTANTS = FRAME_CONSTANTS + {table(given.declared)}",
          f"MULTIPLIERS = {size}",
-         f"VECTOR = {not turns}        # the equations are components of one vector", "READS = 0",
-         *memory(() if turns else [f"tangent_{axis}" for axis in "xyz"[:size]]),
+         f"VECTOR = {not alone}        # the equations are components of one vector", "READS = 0",
+         *memory(() if turns else [f"tangent_{axis}" for axis in "xyz"[:2 if planar else 3]]),
          "WIDTH = None            # any number",
          "INERTIAL = False        # has kinetic energy",
          "POWER = False        # does work on the system: a load, damper or drive",

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 from sebody.basics.errors import InputError
-from sebody.contract.names import path_kind, path_load_kind, path_turn_kind
+from sebody.contract.names import path_across_kind, path_kind, path_load_kind, path_turn_kind
 from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Path, Superelement
+from sebody.model.parts import Element, OnPath, Path, Superelement
 
 
 def paths_on(model: Mechanism, body: Superelement) -> list[Path]:
@@ -65,10 +65,16 @@ def put_on(model: Mechanism, old: Superelement, made: Superelement) -> None:
                 continue
             on = one.path._replace(path=changed[one.path.path])
             kept = one.attachments[one.carried[0]:]
-            frame = FRAMES[made.frame].kernel
             kind = one.kind
             if on.here.carrier is made:
-                kind = path_turn_kind(frame) if on.turns else path_kind(frame, model.planar)
+                kind = _kind(on, FRAMES[made.frame].kernel, model.planar)
             known[one] = replace(one, kind=kind, attachments=on.here.attachments + kept, path=on,
                                  shares=known.get(one.shares) if one.shares else None)
         joint.constraints = tuple(known.get(one, one) for one in joint.constraints)
+
+
+def _kind(on: OnPath, frame: str, planar: bool) -> str:
+    """Kind of an element of a joint on a path of a body with this frame."""
+    if on.turns:
+        return path_turn_kind(frame, planar)
+    return path_kind(frame, planar) if on.section is None else path_across_kind(frame)

@@ -48,8 +48,8 @@ def check_kernels(names: Iterable[str] | None = None) -> list[CheckRow]:
                  check_law_products if _of_laws(name) else
                  check_products if name.startswith(PRODUCTS) else
                  check_motion if name.startswith(MOTION) else
-                 check_body_contact if hasattr(module, "CARRIERS") else
                  check_body_path if hasattr(module, "WAY") else
+                 check_body_contact if hasattr(module, "CARRIERS") else
                  check_path_load if hasattr(module, "MOVING") else
                  check_body_load if hasattr(module, "FRAME") else check_element)
         rows += check(name, module)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation
 
-from sebody.contract.layout import AT_FRAME, ENERGY, FRAME_CONSTANTS, POWERS, RESIDUAL
+from sebody.contract.layout import AT_FRAME, AT_ROTATIONS, ENERGY, FRAME_CONSTANTS, POWERS, RESIDUAL
 from sebody.kernels.paths import HEAD
 from sebody.verify.check.definitions import frame_rotation, local_coordinates
 from sebody.verify.check.elements import (
@@ -46,15 +46,20 @@ KINDS = 3       # of nodes, of those that general kernels are checked with
 def body_path_case(module: ModuleType, seed: int, nodes: Nodes) -> Case:
     """A generic state of a body and, behind it, of a point or angle, the way, and multipliers."""
     body, values, random = placed_case(module, seed, nodes=nodes)
-    d, n = module.MULTIPLIERS, body.n
-    path, behind = _numbers(random, n, d, seed), 2 * d + 1
+    n, equations, turns = body.n, module.MULTIPLIERS, getattr(module, "CARRIERS", 0)
+    d = equations if body.planar else 3
+    path, behind = _numbers(random, n, d, seed), d + 1 + equations
+    if equations < d:       # a direction of the path, at every knot with its slope
+        path = np.r_[path, random.normal(size=6 * len(KNOTS))]
     q, v, a = (np.r_[own, random.normal(size=behind)] for own in (body.q, body.v, body.a))
     q[n + d] = WAY
-    index = np.r_[index_row(len(q), nodes.positions, nodes.rotations), 0]
+    index = np.r_[index_row(len(q), nodes.positions, nodes.rotations + turns), 0]
+    index[AT_ROTATIONS] = nodes.rotations
     index[AT_FRAME], kept = len(body.frames), np.zeros(len(module.MEMORY))
-    case = Case(module, len(q), index, np.zeros(0), q, body.R, v, a,
+    R = Rotation.from_rotvec(random.normal(size=(turns, 3))).as_matrix().ravel()
+    case = Case(module, len(q), index, np.zeros(0), q, np.r_[body.R, R], v, a,
                 np.r_[body.reference, kept], np.r_[body.frames, kept], path=len(path))
-    values |= {"path": path, "held": np.array(0.3)}
+    values |= {"path": path, "held": random.normal(size=3) if turns else np.array(0.3)}
     return with_constants(case, {part.name: values[part.name] for part in module.CONSTANTS})
 
 
@@ -62,7 +67,8 @@ def _numbers(random: np.random.Generator, n: int, d: int, seed: int) -> NDArray:
     """The numbers of a generic path."""
     rows = 0.5 * random.normal(size=(len(KNOTS), 2, d * (1 + n + FOLLOWERS)))
     Q = 0.3 * random.normal(size=(FOLLOWERS, n, n))
-    return np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -20.0, 99.0, KNOTS,
+    return np.r_[len(KNOTS), FOLLOWERS, OFFSET, BLENDED[seed % len(BLENDED)], -20.0, 99.0,
+                 1.0, KNOTS,
                  rows.ravel(), (Q + Q.transpose(0, 2, 1)).ravel()]
 
 
@@ -72,8 +78,9 @@ def _body(case: Case) -> Case:
     module = SimpleNamespace(FRAME=case.module.FRAME, PLANAR=case.planar, CONSTANTS=parts,
                              __name__="body")
     index = index_row(case.own, case.n_positions, case.n_rotations)
-    made = Case(module, case.own, index, np.zeros(0), case.q[:case.own], case.R,
-                case.v[:case.own], case.a[:case.own], case.reference[:9], case.frames[:9])
+    made = Case(module, case.own, index, np.zeros(0), case.q[:case.own],
+                case.R[:9 * case.n_rotations], case.v[:case.own], case.a[:case.own],
+                case.reference[:9], case.frames[:9])
     constants = constants_of(case)
     return with_constants(made, {part.name: constants[part.name] for part in parts})
 
@@ -108,6 +115,40 @@ def _between(case: Case) -> float:
     return tangent - case.q[case.own] - float(constants_of(case)["held"])
 
 
+def _directions(case: Case) -> tuple[NDArray, NDArray]:
+    """Directions in global axes: that of a node in space, and that of the section of the path."""
+    section = frame_rotation(_body(case)) * Rotation.from_rotvec(_row(case, 3))
+    return case.R[-9:].reshape(3, 3) @ constants_of(case)["held"], section.apply(_edge(case))
+
+
+def _edge(case: Case) -> NDArray:
+    """The direction of the path, undeformed."""
+    edges = constants_of(case)["path"][-6 * len(KNOTS):].reshape(len(KNOTS), 2, 3)
+    found: NDArray = CubicHermiteSpline(KNOTS, edges[:, 0], edges[:, 1])(
+        case.q[case.own + 3] - OFFSET)
+    return found
+
+
+def part(case: Case) -> float:
+    """The equation of a point that is held in one direction against the definition."""
+    forces, d, n = evaluate(case, RESIDUAL)[0], case.dimension, case.own
+    edge = frame_rotation(_body(case)).apply(_edge(case))
+    weight = forces[n:n + d] @ edge / case.q[-1] / (edge @ edge)
+    if np.ptp(constants_of(case)["path"][3:5]) > 0:
+        assert 0.01 < weight < 0.99
+    return difference(forces[-1:], np.array([weight * edge @ (case.q[n:n + d] - _place(case))]))
+
+
+def direction(case: Case) -> float:
+    """The equation against the definition; its weight is that of the moment on the node."""
+    forces, (held, edge) = evaluate(case, RESIDUAL)[0], _directions(case)
+    moment = case.R[-9:].reshape(3, 3) @ forces[case.own:case.own + 3]
+    weight = moment @ np.cross(held, edge) / case.q[-1] / np.sum(np.cross(held, edge)**2)
+    if np.ptp(constants_of(case)["path"][3:5]) > 0:
+        assert 0.01 < weight < 0.99
+    return difference(forces[-1:], weight * np.array([held @ edge]))
+
+
 def angle(case: Case) -> float:
     """The equation against the definition; its weight is that of the moment on the node."""
     forces, between = evaluate(case, RESIDUAL)[0], _between(case)
@@ -128,15 +169,19 @@ def place(case: Case) -> float:
 
 
 def balance(case: Case) -> float:
-    """Forces on body and point add up to zero, and so do their moments, where the gap is closed."""
+    """Forces on body and point add up to zero, and so do their moments.
+
+    Where the gap is closed, unless the point is free across.
+    """
     d, n = case.dimension, case.own
     points, angles = [*range(0, case.first_rotation, d)], [*range(case.first_rotation,
                                                                   case.first_mode)]
     if "held" in constants_of(case):
-        angles.append(n)
+        angles += [] if case.carriers else [n]
     else:
         points.append(n)
-        case = case._replace(q=np.r_[case.q[:n], _place(case), case.q[n + d:]])
+        if case.module.VECTOR:
+            case = case._replace(q=np.r_[case.q[:n], _place(case), case.q[n + d:]])
     forces = evaluate(case, RESIDUAL)[0]
     total, moment = np.zeros(3), np.zeros(3)
     for at in points:
@@ -158,7 +203,9 @@ CRITERIA = {"tangent": element_tangent, "force = gradient of lambda.phi": joint_
 def check_body_path(name: str, module: ModuleType) -> list[CheckRow]:
     """All criteria, with some numbers of nodes and modes."""
     turns = any(part.name == "held" for part in module.CONSTANTS)
-    own = {"angle of the path": angle} if turns else {"place on the path": place}
+    own = ({"place on the path": place} if module.VECTOR else {"part of the gap": part}
+           if not turns else {"angle of the path": angle} if module.PLANAR else
+           {"direction of the path": direction})
     return [CheckRow(name, criterion, seed, measure(body_path_case(module, seed, nodes)), None,
                      LIMIT, nodes)
             for nodes in nodes_of(module)[:KINDS] for seed in range(STATES)

@@ -113,10 +113,11 @@ class Case(NamedTuple):
     @property
     def own(self) -> int:
         """Unknowns of the body; behind them are those of a node that carries a surface, or a point
-        on a path, or an angle, with its way and multipliers.
+        on a path, or a node that turns with it, with its way and multipliers.
         """
         if hasattr(self.module, "WAY"):
-            return self.n - 2 * self.module.MULTIPLIERS - 1
+            equations = self.module.MULTIPLIERS
+            return self.n - (equations if self.planar else 3) - 1 - equations
         return self.n - (self.dimension + (1 if self.planar else 3)) * self.carriers
 
     @property
@@ -147,7 +148,12 @@ class Case(NamedTuple):
         if not self.R.size:
             return []
         return [*(self.first_rotation + 3 * j for j in range(self.n_rotations)),
-                *[self.own + self.dimension] * self.carriers]
+                *[self.own + self._before] * self.carriers]
+
+    @property
+    def _before(self) -> int:
+        """Coordinates of a node behind the body before its rotation."""
+        return 0 if hasattr(self.module, "WAY") else self.dimension
 
     @property
     def positions(self) -> list[int]:
