@@ -268,3 +268,52 @@ def test_gears(planar, play):
     # half a millisecond of free flight ends in an impact of 0.1 rad/s, of 2e-3 rad in the teeth
     assert slack.max() < play / 2 + 2e-3 and slack.min() >= -play / 2 - 2e-3
     assert slack[-1] == pytest.approx(play / 2, abs=1e-3)
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_teeth_rebound(planar):
+    """Wheels meet through half their play: teeth part at 0.6 of the speed at which they met."""
+    model = Model(planar=planar)
+    for name, x, J in (("a", 0.3, 0.1), ("b", 1.0, 0.4)):
+        model.node(name, np.array([x, -0.2, 0.1])[:model.dimension])
+        model.rigid_body(name + " wheel", name, 1.0, J if planar else (J,) * 3)
+        model.revolute(name, name="shaft " + name)
+    model.initial_velocity("a", angular=1.0 if planar else (0.0, 0.0, 1.0))
+    model.gear("shaft a", "shaft b", ratio=-2, backlash=0.02, stiffness=1e5, restitution=0.6,
+               name="teeth")
+    result = simulate(model, 1e-4, 0.026)
+    first, second = (result[f"{name}.angular_velocity"].reshape(len(result.t), -1)[:, -1]
+                     for name in "ab")
+    assert (first + 2 * second)[[0, -1]] == pytest.approx([1.0, -0.6], rel=5e-3)
+
+
+@pytest.mark.parametrize("planar", [True, False])
+def test_a_carried_plane_is_where_its_point_is(planar):
+    """At the start the force is that of the depth, wherever the body is that carries the plane."""
+    normal = np.array([0.6, 0.8, 0.0])[:2 if planar else 3]
+    at = np.array([3.0, -2.0, 1.0])[:len(normal)]
+    model = Model(planar=planar)
+    model.fix(model.node("floor", at))
+    model.node("ball", at + 0.34 * normal)
+    model.rigid_body("body", "ball", 1.0, 0.004 if planar else (0.004,) * 3)
+    model.contact("ball", on=plane(normal, point=at + 0.25 * normal, node="floor"), radius=0.1,
+                  stiffness=1e4, name="touch")
+    result = simulate(model, 1e-4, 2e-4)
+    assert result["touch.normal_force"][0] == pytest.approx(1e4 * 0.01**1.5, rel=1e-6)
+    assert result["ball.acceleration"][0] == pytest.approx(1e4 * 0.01**1.5 * normal, rel=1e-6)
+
+
+@LOOSE
+@pytest.mark.parametrize("planar", [True, False])
+@pytest.mark.parametrize("speed, looked_at", [(5e-4, False), (2e-3, True)])
+def test_steps_look_at_impacts_above_a_thousandth_of_the_given_speed(planar, speed, looked_at):
+    model = Model(planar=planar)
+    up = np.eye(model.dimension)[-1]
+    model.node("ball", (1e-6 - 0.2) * up)
+    model.rigid_body("body", "ball", 1.0, 0.1 if planar else (0.1,) * 3)
+    model.initial_velocity("ball", -speed * up)
+    model.contact("ball", on=plane(up, point=-0.2 * up), stiffness=1e6, exponent=1.0,
+                  restitution=0.6, at_speed=1.0)
+    result = simulate(model, 3e-3, 0.06)
+    assert result["ball.velocity"][-1] @ up > 0.5 * speed
+    assert (result.cuts > 0) == looked_at

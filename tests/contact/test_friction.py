@@ -229,6 +229,17 @@ def test_smooth_law():
     assert speed == pytest.approx(1.0 - 0.6 * np.linspace(0, 1, len(speed)), abs=1e-9)
 
 
+@pytest.mark.parametrize("share", [0.3, 1.0, 2.0])
+@pytest.mark.parametrize("planar", [True, False])
+def test_smooth_law_near_its_reference_speed(planar, share):
+    """``N (mu_d tanh 4x + (mu_s - mu_d) x / (x^2/4 + 3/4)^2)`` at x reference speeds."""
+    model = block(planar, mass=1.5, speed=share * 0.01)
+    model.friction("slide", 0.3, static=0.5, preload=2.0, reaction=False, speed=0.01)
+    found = simulate(model, 1e-5, 1e-5)["block.acceleration"][0, 0]
+    law = 0.3 * np.tanh(4 * share) + 0.2 * share / (share**2 / 4 + 0.75)**2
+    assert found == pytest.approx(-2.0 * law / 1.5, rel=1e-9)
+
+
 @pytest.mark.parametrize("steps", [{"h": 2e-3}, {"h": 2e-2, "tolerance": Tolerance(1e-6)}])
 def test_resumed_run_is_the_same(steps, tmp_path):
     """What friction and stops keep is saved: bit for bit, fixed and variable steps."""

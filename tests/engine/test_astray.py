@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from sebody import Model, simulate
+from sebody.engine.newton import strayed
 from sebody.engine.state import GAP
 from sebody.fem import rectangle
 from sebody.runs.failures import explained
@@ -39,6 +40,16 @@ def test_a_load_at_once_bends_a_stiff_beam_twice_as_far_as_at_rest(h, modes):
     # all of the load is not in the first mode, bending is not quite linear, steps are long
     assert shift.max() == pytest.approx(2.0 * load / stiffness, rel=0.05)
     assert shift.min() > -0.05 * shift.max()
+
+
+@pytest.mark.parametrize(("share", "far"), [(0.45, False), (-0.55, True)])
+def test_steps_that_end_half_a_size_from_where_their_rates_led_have_strayed(share, far):
+    """A change of an acceleration by ``1 / (beta h^2)`` moves its coordinate by one."""
+    simulation = Simulation(_clamped(100.0, 2), 0.01)
+    system, state, scheme = simulation.system, simulation.state, simulation.scheme
+    i, state.clock.current_step = int(np.argmax(system.magnitude)), 0.01
+    state.aux[i] = state.aux_old[i] + share * system.magnitude[i] / (scheme.beta * 0.01**2)
+    assert bool(strayed(system, state, scheme)) == far
 
 
 @pytest.mark.parametrize("mass", [True, False])

@@ -82,6 +82,18 @@ def test_converged_mean_is_the_same_from_any_start():
     assert np.ptp(found, axis=0).max() <= 4e-15
 
 
+@pytest.mark.parametrize("twist", [0.6, 2.4])
+def test_mean_of_two_stays_near_the_last_frame_where_a_body_is_twisted_far(twist):
+    """Twisted by more than half a turn in all, the other mean lies half a turn away."""
+    base = Rotation.from_rotvec([0.4, -1.0, 0.7])
+    turns = np.array([[0, -twist, 0], [0, twist, 0]])
+    nodes, frame, psi = base * Rotation.from_rotvec(turns), base.as_matrix().ravel(), np.zeros(6)
+    assert locate.converged_mean(2, np.arange(2), np.array([0.5, 0.5]),
+                                 nodes.as_matrix().ravel(), frame, psi) == 0
+    assert np.abs(frame - base.as_matrix().ravel()).max() <= 4e-15
+    assert np.abs(psi - turns.ravel()).max() <= 1e-14
+
+
 def test_converged_mean_refuses_half_turns():
     base = Rotation.from_rotvec([0.4, -1.0, 0.7])
     nodes = base * Rotation.from_rotvec([[0, 0, 0], [0, 3.05, 0]])

@@ -65,6 +65,22 @@ def test_work_of_a_winch_is_the_energy():
     assert work[-1] + result["rope.work"][-1] == pytest.approx(20.0 * G * raised, rel=1e-3)
 
 
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_sheave_in_its_bearing_does_not_turn_with_its_node(flat):
+    """A torque turns a bracket up; what turns on it without a rope stands in space."""
+    model = Model(planar=flat)
+    axis = 1.0 if flat else TURN[:, 2]
+    node = model.node("bracket", (0.3, -0.2) if flat else AT)
+    model.rigid_body("body", node, 2.0, 0.5 if flat else 0.5 * np.eye(3))
+    model.revolute(node, **({} if flat else {"axis": axis}))
+    model.sheave("wheel", node, 0.1, inertia=0.3, **({} if flat else {"axis": axis}))
+    model.torque(node, 2.0 * axis, 1.0)
+    result = simulate(model, 0.01, 0.5)
+    rate = result["bracket.angular_velocity"].reshape(len(result.t), -1) @ np.atleast_1d(axis)
+    assert rate[-1] == pytest.approx(2.0 / 0.5 * 0.5, rel=1e-9)
+    assert result["wheel.rate"] == pytest.approx(-rate, abs=1e-9)
+
+
 def tangent_length(points, radii, signs):
     """Length of a rope past circles, by tangents that are found as zeros of their angles."""
     def contact(k, angle):
