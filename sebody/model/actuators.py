@@ -15,10 +15,21 @@ from sebody.model.arguments import chosen_name, dof_block, known, rotation_vecto
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
-from sebody.model.parts import SLIDES, TURNS, Attachment, Element, Joint, Node, positions, rotations
+from sebody.model.parts import (
+    SLIDES,
+    TURNS,
+    Attachment,
+    Element,
+    Joint,
+    Node,
+    Rope,
+    positions,
+    rotations,
+)
 from sebody.model.time_functions import TimeFunction
+from sebody.model.winches import wound_end
 
-WAYS = "give joint= the name of one, between= two nodes, or node= and direction="
+WAYS = "give joint= the name of one, between= two nodes, rope=, or node= and direction="
 
 
 def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
@@ -26,11 +37,13 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
              direction: ArrayLike | None = None, what: str | None = None,
              limit: float | tuple[float, float] | None = None, rate: float | None = None,
              lag: float = 0.0, inertia: float = 0.0, ratio: float = 1.0,
-             start: float = 0.0, **acting: Unpack[Acting]) -> Element:
+             start: float = 0.0, rope: Rope | str | None = None,
+             **acting: Unpack[Acting]) -> Element:
     """Force or torque that a controller sets, or `Simulation.set_input`.
 
     It acts along the motion of a joint, on `node` of the joint and opposite on the other one; along
-    the line between two nodes, which it pushes apart; or on a node, along a direction of space.
+    the line between two nodes, which it pushes apart; on a node, along a direction of space; or at
+    the first place of a rope, as a winch that pulls it in.
 
     Parameters
     ----------
@@ -58,6 +71,9 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
         `ratio` times as much acts.
     start : float
         Value until something is set [force] or [force length].
+    rope : Rope or str, optional
+        Whose first place is a node, where the winch is; it needs `inertia`, that of its motor and
+        drum with `ratio` one over the radius of the drum: the input is the torque on the drum then.
     **acting
         `until`, `from_`, `breaks_at`, `release_when`: see `sebody.model.acting.Acting`. What does
         not act has no force; its signal and rotor stay.
@@ -68,7 +84,7 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
         A joint that does not move along or about one axis, or numbers that make no sense.
     """
     where = f"actuator {inputs.name(name, 'name of an actuator')!r}"
-    if sum(one is not None for one in (joint, between, node)) != 1:
+    if sum(one is not None for one in (joint, between, node, rope)) != 1:
         raise InputError(f"{where} acts on nothing, or on several things: {WAYS}")
     ratio = inputs.number(ratio, f"{where}: ratio")
     if ratio == 0.0:
@@ -83,6 +99,8 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
                                       time_function))
     if direction is not None:
         raise InputError(f"{where}: a direction goes with node= alone; a joint has an axis")
+    if rope is not None:
+        return _of_rope(model, where, name, rope, inertia, ratio, time_function)
     way, attachments, constants = (
         _of_joint(model, where, joint, what) if joint is not None else
         _between(model, where, between, what))
@@ -94,6 +112,21 @@ def actuator(model: Mechanism, name: str, joint: str | Joint | None = None,
             chosen_name(model, None,
                         f"rotor of {name}"), model.kind_of(f"{way}_rotor"), attachments,
             {"inertia": inertia, "ratio": ratio, **constants}))
+    return made
+
+
+def _of_rope(model: Mechanism, where: str, name: str, rope: Rope | str, inertia: float,
+             ratio: float, time_function: TimeFunction) -> Element:
+    """A winch, whose unknown is what it has given of the rope."""
+    if not inertia:
+        raise InputError(f"{where}: its winch needs inertia=, that of motor and drum: what a rope "
+                         "pulls without mass has no acceleration")
+    called = chosen_name(model, name, "actuator", ("signal",))
+    place = wound_end(model, where, rope)
+    made = _added(model, Element(called, "way_motor", (place,), {"gain": -ratio},
+                                 time_function=time_function))
+    model.loads.append(Element(chosen_name(model, None, f"rotor of {name}"), "way_rotor", (place,),
+                               {"inertia": inertia, "ratio": ratio}, hidden=place.dof_block))
     return made
 
 

@@ -33,6 +33,7 @@ from sebody.model.parts import (
 )
 from sebody.model.rope_geometry import Span, spans_of
 from sebody.model.time_functions import TimeFunction
+from sebody.model.winches import motion_of_drive
 
 Z = np.array([0.0, 0.0, 1.0])
 SIDES = {"+": 1.0, "-": -1.0}
@@ -110,7 +111,7 @@ def _wheel(model: Mechanism, name: str, node: Node, axis: NDArray, inertia: floa
 
 
 def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], stiffness: float,
-         damping: float = 0.0, length: float | Source = None, pretension: float = 0.0,
+         damping: float = 0.0, length: float | str | Source = None, pretension: float = 0.0,
          wrap: str = "+") -> Rope:
     """Rope from a point over points and sheaves to a last point: it only pulls.
 
@@ -131,10 +132,11 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
         E A [force]: a rope of length L has the stiffness E A / L.
     damping : float
         c [force time].
-    length : float, table, function, tuple of three functions or ready profile, optional
+    length : float, table, function, tuple of three functions, ready profile or str, optional
         Without force [length]; by default that of its way at the start, with `pretension`. A
         history is that of a winch at the first place, with results ``winch of <name>.thrust``,
-        ``.power`` and ``.work``; one that begins at zero is added to the length at the start.
+        ``.power`` and ``.work``; one that begins at zero is added to the length at the start. The
+        name of a drive along a way gives its motion. A winch by force is `actuator(..., rope=)`.
     pretension : float
         Tension at the start, in place of a length [force].
     wrap : str
@@ -160,7 +162,7 @@ def rope(model: Mechanism, name: str, places: Sequence[Node | Sheave | str], sti
     stiffness = inputs.number(stiffness, f"{what}: stiffness", above=0.0)
     damping = inputs.number(damping, f"{what}: damping", least=0.0)
     pretension = inputs.number(pretension, f"{what}: pretension", least=0.0)
-    material, winch = _length(what, length, pretension)
+    material, winch = _length(model, what, length, pretension)
     made, spans = spans_of(what, found, _signs(what, wrap, found))
     if winch is not None and made[0].sheave is not None:
         raise InputError(f"{what} has a history of its length and begins on a drum: give a node as "
@@ -237,12 +239,14 @@ class _Part(NamedTuple):
         return sum(span.length for span in self.spans) + sum(self.arcs)
 
 
-def _length(what: str, length: float | Source, pretension: float
+def _length(model: Mechanism, what: str, length: float | str | Source, pretension: float
             ) -> tuple[float, TimeFunction | None]:
     """The length of a rope at the start, zero by its way, and the history of its winch, if any."""
     if length is None:
         return 0.0, None
     history = None
+    if isinstance(length, str):
+        return 0.0, motion_of_drive(model, what, length).from_zero()
     if isinstance(length, TimeFunction) or callable(length) or isinstance(length, list | tuple):
         given = motions.history(length)
         length, history = float(given.at(0.0)[0]), given.from_zero()

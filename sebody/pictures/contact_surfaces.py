@@ -94,12 +94,17 @@ def contact_surfaces(model: Mechanism, nodes: Mapping[str, DrawnNode], size: flo
 
 
 def _sheaves(model: Mechanism, nodes: Mapping[str, DrawnNode]) -> Iterator[ContactSurface]:
-    """Sheaves of ropes: a circle, and a spoke that turns with the node."""
+    """Sheaves of ropes: a circle, and a spoke that turns with the node.
+
+    The spoke of one with inertia, which turns by itself, is among the lines of ropes.
+    """
     for one in model.sheaves.values():
         if one.node.name in nodes:
             u, v = across_of(one.axis)
-            yield ContactSurface(one.name, "gear", one.node.name, joined([
-                circle(one.radius, u, v, np.zeros(3)), line(np.zeros(3), one.radius * u)]))
+            parts = [circle(one.radius, u, v, np.zeros(3))]
+            if one.wheel is None:
+                parts.append(line(np.zeros(3), one.radius * u))
+            yield ContactSurface(one.name, "gear", one.node.name, joined(parts))
 
 
 def _curves(model: Mechanism, nodes: Mapping[str, DrawnNode], size: float

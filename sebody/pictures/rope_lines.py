@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Rope, RopePlace
+from sebody.model.parts import Element, Rope, RopePlace, Sheave
+from sebody.pictures.contact_shapes import across_of
 from sebody.pictures.drawn_nodes import DrawnNode
 from sebody.pictures.surface import spatial
 from sebody.quantities import ropes
@@ -32,16 +33,34 @@ class DrawnRope(NamedTuple):
 
 def numbers_of_ropes(model: Mechanism) -> int:
     """Numbers of all points of ropes in a frame, at most."""
-    return sum(3 * (ARC + 2) * len(rope.places) for rope in model.ropes.values())
+    return sum(3 * (ARC + 2) * len(rope.places) for rope in model.ropes.values()) + 6 * len(
+        _turning(model))
 
 
 def drawn_ropes(result: Result, states: NDArray, nodes: Mapping[str, DrawnNode]
                 ) -> list[DrawnRope]:
-    """Ropes between drawn nodes, in some recorded states."""
+    """Ropes between drawn nodes, in some recorded states, and spokes of sheaves that turn."""
     of = histories(result)
-    return [part for rope in result.model.ropes.values()
-            if all(place.node.name in nodes for place in rope.places)
-            for part in _parts(of, rope, states, nodes)]
+    found = [part for rope in result.model.ropes.values()
+             if all(place.node.name in nodes for place in rope.places)
+             for part in _parts(of, rope, states, nodes)]
+    return found + [_spoke(of, sheave, states, nodes[sheave.node.name])
+                    for sheave in _turning(result.model) if sheave.node.name in nodes]
+
+
+def _turning(model: Mechanism) -> list[Sheave]:
+    """Sheaves that turn relative to their nodes."""
+    return [sheave for sheave in model.sheaves.values() if sheave.wheel is not None]
+
+
+def _spoke(of: Histories, sheave: Sheave, states: NDArray, node: DrawnNode) -> DrawnRope:
+    """A line from the centre of a sheave to its rim, which turns with it."""
+    u, v = across_of(sheave.axis)
+    angle = of.whole(ropes.turned(of, sheave.name, "q"))[states][:, None]
+    rim = sheave.radius * (np.cos(angle) * u + np.sin(angle) * v)
+    points = np.stack([np.zeros_like(rim), rim], axis=1)
+    return DrawnRope(sheave.name, _in_space(node, points), 2 * [sheave.node.name],
+                     np.zeros(len(states), dtype=bool))
 
 
 def _parts(of: Histories, rope: Rope, states: NDArray, nodes: Mapping[str, DrawnNode]

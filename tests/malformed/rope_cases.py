@@ -58,7 +58,8 @@ CASES = {
         "stiffness": positive(f"{ROPE}: stiffness"),
         "damping": not_negative(f"{ROPE}: damping"),
         "length": [*[pair for pair in positive(f"{ROPE}: length")
-                     if pair[0] is not None and pair[0] != [1.0]],
+                     if pair[0] is not None and not isinstance(pair[0], list | str)],
+                   *have(f"is unknown: {ROPE}: the model has no drives", "1", "ram"),
                    *have("motion of a drive", [(0.0, float("nan"))]),
                    (8.0, f"{ROPE} has a length and a pretension: leave one of them out")],
         "pretension": not_negative(f"{ROPE}: pretension"),

@@ -55,7 +55,14 @@ def test_ropes_are_drawn_along_tangents_and_arcs(flat, tmp_path):
     result = simulate(model, 2e-3, 0.5)
     drawn = scenery(result, 60)
     n = np.array([0, 0, 1.0]) if flat else TURN[:, 2]
-    first, last = drawn.ropes
+    first, last, spoke = drawn.ropes
+    centre = drawn.nodes["p"].position
+    rays = spoke.points[:, 1] - centre
+    assert np.linalg.norm(rays, axis=1) == pytest.approx(0.25, rel=1e-12)
+    turned = np.arctan2(np.cross(rays[0], rays) @ n, rays @ rays[0])
+    angle = result["wheel.angle"][drawn.states] * (1.0 if flat else -1.0)   # about its own axis
+    assert np.exp(1j * turned) == pytest.approx(np.exp(1j * angle), abs=1e-9)
+    assert np.ptp(angle) > 0.1
     assert not any(link.kind == "distance" for link in drawn.links)
     whole = np.concatenate([first.points, last.points], axis=1)
     names = [*first.places, *last.places]

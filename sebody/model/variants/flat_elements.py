@@ -281,6 +281,10 @@ def _turn_rotor(flat: Flattening, one: Element) -> tuple[str, dict]:
     return "planar_turn_rotor", {name: one.constants[name] for name in ("inertia", "ratio")}
 
 
+def _of_winch(flat: Flattening, one: Element) -> tuple[str, dict]:
+    return one.kind, dict(one.constants)
+
+
 def _along(flat: Flattening, one: Element) -> tuple[str, dict]:
     return f"planar_{one.kind}", dict(one.constants) | {
         "e": flat.vector(one.vector("e"), f"the axis of {one.name!r}")}
@@ -293,4 +297,5 @@ ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "table_torsion_spring": _table_torsion_spring, "bushing": _bushing, "bearing": _bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
     "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged,
-    "rope_wheel": flat_wheel, "friction_rope": _unchanged}
+    "rope_wheel": flat_wheel, "friction_rope": _unchanged, "way_motor": _of_winch,
+    "way_rotor": _of_winch}
