@@ -274,3 +274,18 @@ def test_work_within_steps_follows_the_power():
     assert result.steps < len(result.t) / 3
     exact = push**2 * result.t**2 / (2 * mass)
     assert result["force on ball.position.work"] == pytest.approx(exact, rel=1e-9, abs=1e-12)
+
+
+def test_the_number_of_steps_does_not_depend_on_the_unit_of_time():
+    """A weight on a hardening spring, in units in which all bits but the exponents are the same."""
+    taken = []
+    for second in (1.0, 1024.0):
+        model = Model(planar=True)
+        model.point_mass("ball", model.node("ball", (1.3, 0.2), keeps="translation"), 2.0)
+        model.fix(model.node("wall", (0.0, 0.0), keeps="translation"), "position")
+        model.spring("ball", "wall", stiffness=80.0 / second**2, cubic=300.0 / second**2,
+                     length=1.0)
+        model.initial_velocity("ball", np.array([0.5, 0.8]) / second)
+        result = simulate(model, 0.125 * second, 8.0 * second, tolerance=Tolerance(1e-4))
+        taken.append(result.steps)
+    assert taken[0] == taken[1] > 60
