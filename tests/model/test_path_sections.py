@@ -7,7 +7,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from sebody import InputError, Model, Simulation, generalized_alpha, simulate
-from sebody.analysis import equilibrium
+from sebody.analysis import equilibrium, vibrations
 from sebody.fem import rectangle
 
 G = 9.81
@@ -15,7 +15,8 @@ STEEL = {"youngs_modulus": 7e10, "poisson_ratio": 0.25, "density": 2700.0}
 TURNED, SHIFT = Rotation.from_rotvec([0.4, -0.7, 1.1]), np.array([3.0, -2.0, 1.0])
 
 
-def arm(planar=False, turn=None, shift=(0.0, 0.0, 0.0), beside=0.0, half=None, joint=(), **beam):
+def arm(planar=False, turn=None, shift=(0.0, 0.0, 0.0), beside=0.0, half=None, joint=(),
+        blend=0.0, **beam):
     """A carriage that runs on an arm that falls, its centre beside the path; or on two wheels."""
     R = turn or Rotation.identity()
 
@@ -33,7 +34,7 @@ def arm(planar=False, turn=None, shift=(0.0, 0.0, 0.0), beside=0.0, half=None, j
     model.rigid_body("carriage", car, 0.3, 0.02 if planar else inertia,
                      centre=at(0.0, 0.15, beside))
     model.gravity(R.apply([0.0, -G, 0.0])[:2 if planar else 3])
-    model.path("rail", on="arm")
+    model.path("rail", on="arm", **({"blend": blend} if blend else {}))
     if half is None:
         given = dict(joint) | {"axis": R.apply(dict(joint)["axis"])} if "axis" in dict(joint) else (
             dict(joint))
@@ -53,9 +54,10 @@ def angle_of(result, node="car"):
 
 @pytest.mark.filterwarnings("ignore")
 def test_motion_in_a_plane_is_that_of_the_planar_model():
-    """Of bodies without modes, whose shapes are the same in both."""
-    flat, space = (simulate(arm(planar, bodies=2, modes=0), 1e-3, 0.2, EXACT)
+    """Of bodies without modes, whose shapes are the same in both, from one body to the next."""
+    flat, space = (simulate(arm(planar, bodies=2, modes=0, blend=0.2), 1e-3, 0.25, EXACT)
                    for planar in (True, False))
+    assert 1.0 < flat["runs.way"][-1] < 1.07
     assert space["runs.way"][-1] == pytest.approx(flat["runs.way"][-1], abs=1e-9)
     assert angle_of(space) == pytest.approx([0.0, 0.0, flat["car.rotation"][-1]], abs=1e-9)
     assert space["runs.moment"][-1] == pytest.approx([0.0, 0.0, flat["runs.moment"][-1]], abs=1e-5)
@@ -114,10 +116,10 @@ def helical(on=None, **given):
     return model
 
 
-def expected(times):
-    """Angles along the helix and rotations of the body: one equation for a triad without twist.
+def reduced():
+    """Rotation, M and V of one equation: the kinetic energy is M(u) u'^2 / 2.
 
-    The triad turns by t x t'. Kinetic energy M(u) u'^2 / 2, since it has one degree of freedom.
+    A triad without twist turns by t x t'.
     """
     grid = np.linspace(-0.45, 0.7, 601)
     slope = np.stack([-RADIUS * np.sin(grid), RADIUS * np.cos(grid), PITCH + 0 * grid], axis=1)
@@ -132,6 +134,12 @@ def expected(times):
     M = CubicSpline(grid, MASS * np.sum((slope + np.cross(w, arms))**2, axis=1)
                     + np.sum(own * (own @ INERTIA), axis=1))
     V = CubicSpline(grid, -MASS * (helix(grid).T + arms) @ FIELD)
+    return turned, M, V
+
+
+def expected(times):
+    """Angles along the helix and rotations of the body."""
+    turned, M, V = reduced()
     found = solve_ivp(lambda _, z: [z[1], -(M(z[0], 1) * z[1]**2 / 2 + V(z[0], 1)) / M(z[0])],
                       (0.0, times[-1]), [0.7, 0.0], "DOP853", times, rtol=1e-10, atol=1e-12)
     return found.y[0], turned(found.y[0]).T.reshape(-1, 3, 3)
@@ -150,6 +158,19 @@ def test_a_body_on_a_helix_keeps_to_a_triad_without_twist(on):
     assert abs(u[-1] - 0.7) > 0.5
     assert np.all(np.array(errors[1]) < 1e-6)
     assert np.all(np.array(errors[0]) > 3.0 * np.array(errors[1]))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_small_motions_on_a_helix():
+    """Rest where a spring along the path holds the weight, and the frequency about it."""
+    model, stiffness, length = helical(), 400.0, 1.5
+    model.spring("runs", stiffness=stiffness, length=length)
+    state = equilibrium(model)
+    x, y, _ = state["car.position"][-1]
+    (_, M, V), u, slope = reduced(), np.arctan2(y, x), np.hypot(RADIUS, PITCH)
+    assert stiffness * (state["runs.way"][-1] - length) * slope == pytest.approx(-V(u, 1), rel=1e-3)
+    assert vibrations(state).omega[0] == pytest.approx(
+        np.sqrt((V(u, 2) + stiffness * slope**2) / M(u)), rel=1e-4)
 
 
 @pytest.mark.filterwarnings("ignore")
