@@ -14,7 +14,7 @@ weight rises from 0 to 1 between the first two edges and falls between the last 
 differentiable, or at once where two edges are the same.
 """
 
-from sebody.compiler.decorators import compiled
+from sebody.compiler.decorators import ANY_ORDER, CONTRACT, compiled
 from sebody.contract.layout import OFF_PATH, OK
 
 HEAD = 10           # numbers before the knots
@@ -57,24 +57,15 @@ def path_place(path, s, y, n, dimension, head, shapes, slopes, bends):
         head[ARM + c] = _row(path, first + c, size, head, 0)
         head[SLOPE + c] = _row(path, first + c, size, head, 1)
         head[BEND + c] = _row(path, first + c, size, head, 2)
-    for k in range(n):
-        for c in range(dimension):
-            at = first + dimension * (1 + k) + c
-            shape, slope = _row(path, at, size, head, 0), _row(path, at, size, head, 1)
-            head[ARM + c] += y[k] * shape
-            head[SLOPE + c] += y[k] * slope
-            head[BEND + c] += y[k] * _row(path, at, size, head, 2)
-            shapes[dimension * k + c], slopes[dimension * k + c] = shape, slope
+    first += dimension
+    _set_rows(path, first, dimension * n, size, head, shapes, slopes)
+    for c in range(dimension):
+        _move(path, first, c, y, n, dimension, size, head, shapes, slopes)
     for b in range(followers):
-        at, eta = first + dimension * (1 + n + b), 0.0
+        at = first + dimension * (n + b)
         for c in range(dimension):
             bends[dimension * b + c] = _row(path, at + c, size, head, 0)
-        for k in range(n):
-            moved = _followed(path, b, k, y, n, size)
-            eta += 0.5 * moved * y[k]
-            for c in range(dimension):
-                shapes[dimension * k + c] += bends[dimension * b + c] * moved
-                slopes[dimension * k + c] += _row(path, at + c, size, head, 1) * moved
+        eta = _follow(path, at, b, y, n, dimension, size, head, shapes, slopes)
         _add(path, at, size, dimension, eta, head)
     return OK
 
@@ -200,6 +191,56 @@ def _row(path, at, size, head, derivative):
             + head[first + 2] * path[at + 2 * size] + head[first + 3] * path[at + 3 * size])
 
 
+@compiled(apart=True)
+def _set_rows(path, first, count, size, head, shapes, slopes):
+    """Set so many numbers of the rows at the way, and their derivatives."""
+    a, b, c, d = head[CUBIC], head[CUBIC + 1], head[CUBIC + 2], head[CUBIC + 3]
+    e, f, g, h = head[CUBIC + 4], head[CUBIC + 5], head[CUBIC + 6], head[CUBIC + 7]
+    for i in range(first, first + count):
+        value, slope = path[i], path[i + size]
+        next_value, next_slope = path[i + 2 * size], path[i + 3 * size]
+        shapes[i - first] = a * value + b * slope + c * next_value + d * next_slope
+        slopes[i - first] = e * value + f * slope + g * next_value + h * next_slope
+
+
+@compiled(apart=True)
+def _move(path, first, c, y, n, dimension, size, head, shapes, slopes):
+    """Add what coordinates move along an axis to the point and its derivatives."""
+    place = slope = bend = 0.0
+    for k in range(n):
+        i = dimension * k + c
+        place += y[k] * shapes[i]
+        slope += y[k] * slopes[i]
+        bend += y[k] * _row(path, first + i, size, head, 2)
+    head[ARM + c] += place
+    head[SLOPE + c] += slope
+    head[BEND + c] += bend
+
+
+@compiled(apart=True)
+def _follow(path, at, b, y, n, dimension, size, head, shapes, slopes):
+    """Add a follower, whose row is at `at`, to the shapes and slopes; returns its coordinate."""
+    eta, more, most = 0.0, dimension > 1, dimension > 2
+    shape, slope = _row(path, at, size, head, 0), _row(path, at, size, head, 1)
+    shape_1 = slope_1 = shape_2 = slope_2 = 0.0
+    if more:
+        shape_1, slope_1 = _row(path, at + 1, size, head, 0), _row(path, at + 1, size, head, 1)
+    if most:
+        shape_2, slope_2 = _row(path, at + 2, size, head, 0), _row(path, at + 2, size, head, 1)
+    for k in range(n):
+        moved, i = _followed(path, b, k, y, n, size), dimension * k
+        eta += 0.5 * moved * y[k]
+        shapes[i] += shape * moved
+        slopes[i] += slope * moved
+        if more:
+            shapes[i + 1] += shape_1 * moved
+            slopes[i + 1] += slope_1 * moved
+        if most:
+            shapes[i + 2] += shape_2 * moved
+            slopes[i + 2] += slope_2 * moved
+    return eta
+
+
 @compiled
 def _add(path, at, size, dimension, factor, head):
     """Add the displacement by a coordinate to the point and its derivatives."""
@@ -209,20 +250,14 @@ def _add(path, at, size, dimension, factor, head):
         head[BEND + c] += factor * _row(path, at + c, size, head, 2)
 
 
-@compiled
+@compiled(fastmath=CONTRACT | ANY_ORDER)
 def _followed(path, b, k, y, n, size):
     """Row k of ``Q_b y``."""
-    knots = int(path[0])
+    knots, moved = int(path[0]), 0.0
     first = HEAD + knots + 2 * size * knots + (b * n + k) * n
-    one = two = three = four = 0.0      # sums that do not wait for each other
-    for i in range(0, n - 3, 4):
-        one += path[first + i] * y[i]
-        two += path[first + i + 1] * y[i + 1]
-        three += path[first + i + 2] * y[i + 2]
-        four += path[first + i + 3] * y[i + 3]
-    for i in range(n - n % 4, n):
-        one += path[first + i] * y[i]
-    return (one + two) + (three + four)
+    for i in range(n):
+        moved += path[first + i] * y[i]
+    return moved
 
 
 @compiled
