@@ -5,10 +5,12 @@ takes a minute. Members are read without reference counts, which cost as much as
 """
 
 from collections.abc import Iterable
+from copy import copy
 from ctypes import addressof, c_char
 from dataclasses import fields
 from functools import cache
 from hashlib import sha256
+from typing import Self
 
 import numpy as np
 from llvmlite import ir
@@ -74,6 +76,12 @@ class Arrays:
             own = (place >= 0) & (place < size)
             words[:, own] += size * np.arange(len(one))[:, np.newaxis]
         return words
+
+    def at_row(self, words: NDArray) -> Self:
+        """The group as compiled code reads it at such a row: Python sees the arrays of this one."""
+        group = copy(self)
+        group.__dict__.update(_words=words, _address=words.ctypes.data)
+        return group
 
 
 @cache

@@ -20,10 +20,10 @@ def call_advance(typingctx, address, system, state, record, scheme, last_grid, c
 
 
 @intrinsic
-def call_advance_together(typingctx, address, system, state, scratch, alone, together, apart,
-                          record, scheme, last_grid, dense):
+def call_advance_together(typingctx, address, system, state, scratch, together, apart, record,
+                          scheme, last_grid, dense):
     """Call `sebody.engine.lanes.loop.advance` at its address."""
-    return types.int64(types.int64, system, state, scratch, alone, together, apart, record, scheme,
+    return types.int64(types.int64, system, state, scratch, together, apart, record, scheme,
                        types.int64, types.boolean), called
 
 
@@ -58,9 +58,9 @@ def call_sample(typingctx, address, system, state):
 
 
 @intrinsic
-def call_samples(typingctx, address, system, state, scratch, alone, apart, dense):
+def call_samples(typingctx, address, system, state, scratch, apart, dense):
     """Call `sebody.engine.lanes.samples.sample` at its address."""
-    return types.int64(types.int64, system, state, scratch, alone, apart, types.boolean), called
+    return types.int64(types.int64, system, state, scratch, apart, types.boolean), called
 
 
 @intrinsic

@@ -67,7 +67,7 @@ def iterate(system, state, members, scheme, active, dense):
             active = active & (reason == NO_REASON)
             if not any_true(active):
                 break
-        if not _solve(system, state, active, scheme.stabilized, dense):
+        if not _solve(system, state, members, active, scheme.stabilized, dense):
             return either(active, NO_AID, reason)
         verdict = correct(system, state, scheme, active, iteration, mixed)
         reason = _conclude(system, state, active, verdict, reason)
@@ -128,22 +128,28 @@ def make_matrix(system, state, members, wanted, dense):
 
 
 @compiled(forceinline=True)
-def _solve(system, state, active, shifts, dense):
+def _solve(system, state, members, active, shifts, dense):
     """Solve for the correction, with index 2 for the shift of positions first; False without aid.
     """
     if shifts:
         swap(state.residual, state.constraint_residuals)
     while True:
-        if state.control.pivoted == 0:
-            solve(system, state, dense)     # the only call: with two calls it would not be inlined
-        elif not aided(system, SOLUTION):
+        # the only call: with two calls it would not be inlined
+        if not solve_active(system, state, members, active, dense):
             return False
-        for i in range(system.diagonal.size):
-            state.correction[i] = either(active, state.correction[i], 0.0)
         if not shifts:
             return True
         take_shift(system, state)
         shifts = False
+
+
+@compiled(forceinline=True)
+def solve_active(system, state, members, active, dense):
+    """Solve for the correction; False without aid."""
+    if state.control.pivoted == 0:
+        solve(system, state, dense)
+        return True
+    return aided(system, SOLUTION)
 
 
 @compiled(forceinline=True)

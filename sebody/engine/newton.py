@@ -256,7 +256,9 @@ def accelerate(system, state, sound, norm):
     control.secant = 1
     for i in range(n):
         d = correction[i]
-        change[i] = correction[i] = d - mix * (change[i] + d - last[i])
+        # a step that ended astray may have left no numbers in `change`
+        mixed = either(mix != 0.0, d - mix * (change[i] + d - last[i]), d)
+        change[i] = correction[i] = mixed
         last[i] = d
     return norm
 

@@ -125,7 +125,7 @@ def meet(run: Simulation, times: Sequence[float]) -> None:
     order = np.argsort(corners)
     jumps = np.concatenate([system.jumps, np.zeros(len(more), dtype=np.int64)])
     run.system = replace(system, corners=corners[order], jumps=jumps[order])
-    run.aid = Aid(run.system, run.state, run.sampling.read_sensors)
+    run.aid = Aid.of(run.system, run.state, run.sampling.read_sensors)
 
 
 def _whole(run: Simulation, first: int, last: int) -> History | None:

@@ -1,7 +1,7 @@
 """The loop as Python runs it, and its aid: factors with row exchanges, readings of sensors."""
 
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from ctypes import CFUNCTYPE, c_int64, c_void_p, cast
 from typing import Protocol
 
@@ -23,28 +23,38 @@ class Aid:
 
     Parameters
     ----------
-    system : System
-        Gets the address: its `aid` is of this run alone.
-    state : State
+    runs : sequence of (System, State)
+        Their number is the context that they ask in.
     read : callable
         Sets the readings of sensors.
     """
 
-    def __init__(self, system: System, state: State, read: Callable[[], None]):
-        self.system, self.state, self._read = system, state, read
-        self._exchanges: Exchanges | None = None
+    def __init__(self, runs: Sequence[tuple[System, State]], read: Callable[[], None]):
+        self._runs, self._read = runs, read
+        self._exchanges: dict[int, Exchanges] = {}
         self._raised: BaseException | None = None
         own = weakref.ref(self)             # no circle: runs are large
 
         def serve(context: int, what: int) -> int:
             aid = own()
-            return 1 if aid is None else aid._serve(what)
+            return 1 if aid is None else aid._serve(context, what)
         self._function = _AID(serve)
-        system.aid[ADDRESS] = cast(self._function, c_void_p).value
+
+    @classmethod
+    def of(cls, system: System, state: State, read: Callable[[], None]) -> "Aid":
+        """The aid of a single run, whose system gets the address: its `aid` is its own."""
+        aid = cls([(system, state)], read)
+        system.aid[ADDRESS] = aid.address
+        return aid
+
+    @property
+    def address(self) -> int:
+        """Address of the function that the loop calls."""
+        return cast(self._function, c_void_p).value or 0
 
     def forget(self) -> None:
         """Forget factors: another state was put in place of the one they are of."""
-        self._exchanges = None
+        self._exchanges.clear()
 
     def check(self) -> None:
         """Raise what was raised in the loop."""
@@ -52,13 +62,13 @@ class Aid:
             raised, self._raised = self._raised, None
             raise raised
 
-    def _serve(self, what: int) -> int:
+    def _serve(self, run: int, what: int) -> int:
         while True:
             try:
                 if what == READINGS:
                     self._read()
                 else:
-                    self._exchange(what)
+                    self._exchange(run, what)
                 return 0
             except KeyboardInterrupt as interrupt:
                 self._raised = interrupt
@@ -66,14 +76,16 @@ class Aid:
                 self._raised = error
                 return 1
 
-    def _exchange(self, what: int) -> None:
-        own = self._exchanges or self._room(0)
-        while exchange(self.system, self.state, own, what) == ROOM:
-            own = self._room(int(own.kind[1]))
-        self._exchanges = own
+    def _exchange(self, run: int, what: int) -> None:
+        system, state = self._runs[run]
+        own = self._exchanges.get(run) or _room(system, 0)
+        while exchange(system, state, own, what) == ROOM:
+            own = _room(system, int(own.kind[1]))
+        self._exchanges[run] = own
 
-    def _room(self, entries: int) -> Exchanges:
-        return Exchanges.of(self.system.diagonal.size, self.system.rows.size, entries)
+
+def _room(system: System, entries: int) -> Exchanges:
+    return Exchanges.of(system.diagonal.size, system.rows.size, entries)
 
 
 class Run(Protocol):

@@ -135,7 +135,7 @@ class Simulation:
         self.seconds = 0.0
         self.failure = ""
         self.sampling = Sampling(model, self.numbering, self.system, self.state)
-        self.aid = Aid(self.system, self.state, self.sampling.read_sensors)
+        self.aid = Aid.of(self.system, self.state, self.sampling.read_sensors)
         user_faults.forget(model)
         self.begun, self.tolerance = start, tolerance
         self._unjudged = any("teeth" in load.tuned for load in model.loads)

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from lane_models import assert_bits_in_other_company, chain, single
+from helpers import multipliers_first
+from lane_models import assert_bits_in_other_company, chain, flowing, single
 from readings import TABLE
 
-from sebody import generalized_alpha
+from sebody import Simulation, generalized_alpha
 from sebody.analysis import Ensemble, final, maximum
+from sebody.assembly import build as assembly
 from sebody.compiler.choice import way
 from sebody.explore.ensembles import ensemble
 from sebody.explore.ensembles.choice import matrices_at_once
@@ -87,3 +89,37 @@ def test_matrices_at_once_do_not_depend_on_who_wants_new_ones_of_bodies(monkeypa
         alone = many.run({name: v[run:run + 1] for name, v in given.items()}, 25 * 2 * H, outputs)
         assert alone.in_lanes == 1
         np.testing.assert_array_equal(alone["course"][0], found["course"][run])
+
+
+@pytest.mark.parametrize(("build", "index"), [
+    (chain, 3), (chain, 2), (lambda: flowing(chain(), "end 1", "hinge 0", 1e4, held=False), 3)])
+def test_members_with_row_exchanges_equal_single_runs(build, index, monkeypatch):
+    """Multipliers come first, so every matrix needs them, made at once or one by one.
+
+    With index 2 factors solve twice an iteration.
+    """
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    monkeypatch.setattr(assembly, "number", multipliers_first(assembly.number))
+    rng, made, scheme = np.random.default_rng(5), build(), generalized_alpha(index=index)
+    assert Simulation(made, H, scheme).run_to(H).state.control.pivoted == 1
+    given = {f"{name}.stiffness": rng.uniform(0.7, 1.5, RUNS) for name in made.bodies}
+    given |= {"load.amplitude": rng.uniform(-1, 2, RUNS),
+              "gravity": rng.uniform(-900, 900, (RUNS, 3))}
+    many, outputs = Ensemble(made, H, scheme), {"course": "tip.position"}
+    found = many.run(given, 30 * H, outputs)
+    assert found.in_lanes == RUNS and not found.failures
+    assert_bits_in_other_company(many, given, 30 * H, outputs, found)
+    for run in (0, 8):
+        result = single(made, {name: v[run] for name, v in given.items()}, H, 30 * H, scheme)
+        size = np.abs(result["tip.position"]).max()
+        assert np.abs(found["course"][run] - result["tip.position"]).max() < 1e-10 * size
+
+
+def test_members_come_back_from_steps_astray(monkeypatch):
+    """Steps are too long: what their iterations leave is nothing to the next ones."""
+    monkeypatch.setattr(ensemble, "WORTH_IT", 0)
+    rng = np.random.default_rng(3)
+    given = {"load.amplitude": 4.0 * rng.uniform(-1, 2, RUNS),
+             "gravity": rng.uniform(-900, 900, (RUNS, 3))}
+    found = Ensemble(chain(), 4 * H).run(given, 40 * 4 * H, {"course": "tip.position"})
+    assert found.in_lanes == RUNS and not found.failures

@@ -1,10 +1,10 @@
-"""Members with a rejected step go alone for some steps of the grid, and come back.
+"""Arrays of a member's own: numbers are taken to them from its lane, and given back.
 
-Steps are rejected where Newton's iteration fails, at impacts and where energy grows; where loads
-jump, members go alone, too. Then the numbers of the member are copied to the arrays of a single
-run, and the scalar loop makes the steps of the grid that the others make in lanes, until it is back
-at the length of theirs.
-So a member makes the steps it would make alone.
+That is done for a matrix and for a sample, which functions of single runs make, and for the steps
+after a rejected one. Steps are rejected where Newton's iteration fails, at impacts and where energy
+grows; where loads jump, members go alone, too. Then the loop for numbers makes the steps of the
+grid that the others make in lanes, until it is back at the length of theirs. So a member makes the
+steps it would make alone.
 """
 
 import numpy as np
@@ -37,6 +37,27 @@ def group_at(typingctx, group, address):
 
 
 @compiled
+def of_member(apart, member):
+    """System and state of a member alone."""
+    return (group_at(apart.system, apart.addresses[member, 0]),
+            group_at(apart.state, apart.addresses[member, 1]))
+
+
+@compiled
+def take(apart, places, member):
+    """Copy some numbers of a member from its lane to its own arrays."""
+    for k in places:
+        apart.numbers[member, k] = apart.lanes[k, member]
+
+
+@compiled
+def give(apart, places, member):
+    """Copy some numbers of a member to its lane."""
+    for k in places:
+        apart.lanes[k, member] = apart.numbers[member, k]
+
+
+@compiled
 def jump_is_ahead(system, state):
     """Whether loads jump in the next step."""
     clock, control, corners = state.clock, state.control, system.corners
@@ -49,23 +70,20 @@ def jump_is_ahead(system, state):
 
 
 @compiled
-def take_apart(state, apart, J):
+def take_apart(state, apart):
     """Copy the members that leave to arrays of their own, at the begin of their step.
 
-    `J` are their element matrices of bodies, where these are rotated later. One whose energy is
-    found not to grow after all stays.
+    One whose energy is found not to grow after all stays.
     """
     control = state.control
     for member in range(MEMBERS):
         reason = number_of(control.reason, member)
         if reason <= RUNS:
             continue
-        system, own = (group_at(apart.system, apart.addresses[member, 0]),
-                       group_at(apart.state, apart.addresses[member, 1]))
+        system, own = of_member(apart, member)
         _copy_to(state, apart, member)
-        for k in range(J.shape[1]):
-            own.J[k] = J[member, k]
         own.control.refreshed = 0
+        own.control.pivoted = np.int64(number_of(apart.exchanged[0], member))
         if reason == GROWS:
             if not judge(system, own):
                 _give_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
@@ -80,14 +98,13 @@ def take_apart(state, apart, J):
 
 
 @compiled
-def run_apart(state, apart, J, scheme, dense):
+def run_apart(state, apart, scheme, dense):
     """Run the members that are alone to the time of the others; those that can come back."""
     control = state.control
     for member in range(MEMBERS):
         if number_of(control.reason, member) != APART:
             continue
-        system, own = (group_at(apart.system, apart.addresses[member, 0]),
-                       group_at(apart.state, apart.addresses[member, 1]))
+        system, own = of_member(apart, member)
         code = call_advance(apart.routines[0], system, own, apart.record, scheme, control.grid,
                             _ANY, dense)
         if code != DONE:
@@ -96,8 +113,6 @@ def run_apart(state, apart, J, scheme, dense):
             control.reason = with_number(control.reason, member, GAVE_UP)
         elif own.control.level == 0 and own.control.inside == 0 and own.guard.halved == 0.0:
             _come_back(state, apart, own, member)
-            for k in range(J.shape[1]):
-                J[member, k] = own.J[k]
             control.reason = with_number(control.reason, member, RUNS)
 
 
@@ -107,7 +122,7 @@ def show(state, apart, places):
     control, first = state.control, apart.now[0]
     for member in range(MEMBERS):
         if number_of(control.reason, member) == APART:
-            own = group_at(apart.state, apart.addresses[member, 1])
+            own = of_member(apart, member)[1]
             for k in places:
                 apart.lanes[first + k, member] = own.now[k]
             control.iterations = with_number(control.iterations, member,
@@ -117,23 +132,20 @@ def show(state, apart, places):
 @compiled
 def _copy_to(state, apart, member):
     """Copy a member's numbers from its lane."""
-    numbers, lanes = apart.numbers, apart.lanes
-    for k in apart.places:
-        numbers[member, k] = lanes[k, member]
+    take(apart, apart.places, member)
     for k in range(apart.control_words.shape[0]):
         place, own = apart.control_words[k, 0], apart.control_words[k, 1]
         apart.control[member, k] = (np.int64(apart.control_in_lanes[place + member]) if own == 1
                                     else apart.whole_in_lanes[place])
     _take_floats(apart.clock_words, apart.clock[member], apart.clock_in_lanes, member)
     _take_floats(apart.guard_words, apart.guard[member], apart.guard_in_lanes, member)
-    own = group_at(apart.state, apart.addresses[member, 1])
-    _turn_ring(state, apart, own, member, True)
+    _turn_ring(state, apart, of_member(apart, member)[1], member, True)
 
 
 @compiled
 def _come_back(state, apart, own, member):
     """Copy a member's numbers to its lane; its next step is as long as those of the others."""
-    numbers, lanes, clock = apart.numbers, apart.lanes, state.clock
+    clock = state.clock
     offset = clock.current_step / own.clock.aux_step
     if offset != 1.0:
         for i in range(own.aux.size):       # changes in the last step stay: predictions read them
@@ -142,8 +154,8 @@ def _come_back(state, apart, own, member):
             own.aux_old[i] += more
     if own.clock.factor_step != clock.current_step:
         own.control.wanted = EVALUATED
-    for k in apart.places:
-        lanes[k, member] = numbers[member, k]
+    give(apart, apart.places, member)
+    apart.exchanged[0] = with_number(apart.exchanged[0], member, float(own.control.pivoted))
     for k in range(apart.control_words.shape[0]):
         if apart.control_words[k, 1] == 1:
             apart.control_in_lanes[apart.control_words[k, 0] + member] = apart.control[member, k]

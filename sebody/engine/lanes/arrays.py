@@ -56,10 +56,13 @@ class Scratch(Arrays):
 
 @dataclass(frozen=True, eq=False)
 class Apart(Arrays):
-    """Arrays of members that are alone for a while, see `engine.lanes.apart`.
+    """Arrays of members that are alone for a matrix or a while, see `engine.lanes.apart`.
 
     =======================  =======================================================================
     places                   numbers that members take with them, in the buffer of all numbers
+    taken, returned          likewise: of what matrices depend on, of what is made with them
+    carried                  likewise: element matrices of bodies, where members have them in lanes
+    exchanged                (1,) one where a member's factors have row exchanges, else zero
     lanes                    (size, members) that buffer in lanes
     numbers                  (members, size) the same of every member alone
     now                      (1,) where `State.now` begins in it
@@ -76,6 +79,10 @@ class Apart(Arrays):
     """
 
     places: NDArray
+    taken: NDArray
+    returned: NDArray
+    carried: NDArray
+    exchanged: NDArray
     lanes: NDArray
     numbers: NDArray
     now: NDArray

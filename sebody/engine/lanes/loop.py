@@ -4,7 +4,7 @@ Predictions, iterations and guards are the functions of that loop, compiled for 
 What a member does next follows from its own numbers alone, so results do not depend on which
 members are run together: a member that has converged, or keeps its matrix, keeps its numbers while
 others go on. Members with a rejected step go alone until they can come back, see
-`engine.lanes.apart`. One that would have to ask Python gives up, and is run alone from its start.
+`engine.lanes.apart`. One that fails there gives up, and is run alone from its start.
 """
 
 from sebody.compiler.decorators import compiled
@@ -31,7 +31,7 @@ from sebody.engine.step_control import NEAR
 
 
 @compiled(nogil=True)
-def advance(system, state, scratch, alone, together, apart, record, scheme, last_grid, dense):
+def advance(system, state, scratch, together, apart, record, scheme, last_grid, dense):
     """Run until `last_grid`, or until no member is left that has not given up; the step reached."""
     control = state.control
     if control.grid == 0:
@@ -43,18 +43,18 @@ def advance(system, state, scratch, alone, together, apart, record, scheme, last
             control.reason = where(control.reason == RUNS, spread(JUMPS), control.reason)
         running = control.reason == RUNS
         if some(running):
-            reason = _attempt(system, state, (scratch, alone, together), scheme, running, dense)
+            reason = _attempt(system, state, (scratch, apart, together), scheme, running, dense)
             control.reason = where(running, reason, control.reason)
         if some(control.reason > RUNS):
-            take_apart(state, apart, alone.J)
+            take_apart(state, apart)
         # rotations of all members become orthogonal at the same steps of the grid
         count_step(system, state, control.grid)
         control.grid += 1
         state.clock.time = control.grid * state.clock.step
         if 0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step:
-            call_samples(apart.routines[1], system, state, scratch, alone, apart, dense)
+            call_samples(apart.routines[1], system, state, scratch, apart, dense)
         if some(control.reason == APART):
-            run_apart(state, apart, alone.J, scheme, dense)
+            run_apart(state, apart, scheme, dense)
         if control.grid % record.every[0] == 0:
             _write(system, state, scratch, apart, record)
     return control.grid

@@ -21,7 +21,7 @@ from sebody.engine.work import set_acting
 
 
 @compiled
-def restart(system, state, scratch, alone, active, dense):
+def restart(system, state, scratch, apart, active, dense):
     """Solve for accelerations and multipliers of the active members, at the time reached."""
     control, clock, spare = state.control, state.clock, state.spare
     keeps = spare.size > 0 and system.regularized[0] == 0
@@ -41,7 +41,7 @@ def restart(system, state, scratch, alone, active, dense):
         evaluated = going & (control.wanted == float(EVALUATED))
         _evaluate(system, state, scratch, going)
         if some(evaluated):
-            going = going & ~_factorize(state, alone, scratch.frames, dense, evaluated)
+            going = going & ~_factorize(state, apart, scratch.frames, dense, evaluated)
         solve(system, state, dense)
         for i in range(system.diagonal.size):
             state.correction[i] = where(going, state.correction[i], spread(0.0))
@@ -61,10 +61,10 @@ def restart(system, state, scratch, alone, active, dense):
 
 
 @compiled
-def _factorize(state, alone, begun, dense, wanted):
+def _factorize(state, apart, begun, dense, wanted):
     """Make the matrices of some members; returns those that have none, and give up."""
     control = state.control
-    failed = wanted & ~factorize_masses(state, alone, begun, dense, wanted)
+    failed = wanted & ~factorize_masses(state, apart, begun, dense, wanted)
     one = where(wanted, spread(1.0), spread(0.0))
     control.wanted = where(wanted, spread(float(KEPT)), control.wanted)
     control.fresh += one

@@ -13,7 +13,7 @@ from sebody.compiler.inside.lanes import number_of, some, spread, with_number
 from sebody.contract.counts import MEMBERS
 from sebody.engine.calls import call_sample
 from sebody.engine.control_data import NEXT
-from sebody.engine.lanes.apart import GAVE_UP, RUNS, group_at
+from sebody.engine.lanes.apart import GAVE_UP, RUNS, of_member
 from sebody.engine.lanes.restart import restart
 from sebody.engine.state import ASKED, DONE, SAMPLED
 
@@ -24,7 +24,7 @@ def address(groups: tuple) -> int:
 
 
 @compiled
-def sample(system, state, scratch, alone, apart, dense):
+def sample(system, state, scratch, apart, dense):
     """Sample what is due at the time reached for the members that run in lanes."""
     control = state.control
     changed = spread(0.0)
@@ -37,15 +37,14 @@ def sample(system, state, scratch, alone, apart, dense):
                 changed = with_number(changed, member, float(code))
     changing = changed > 0.0
     if some(changing):
-        restart(system, state, scratch, alone, changing, dense)
+        restart(system, state, scratch, apart, changing, dense)
     return 0
 
 
 @compiled
 def _sample_member(system, state, apart, member):
     """Sample one member; 1 where an input changed, 0 where none did, -1 after a fault."""
-    own_system, own = (group_at(apart.system, apart.addresses[member, 0]),
-                       group_at(apart.state, apart.addresses[member, 1]))
+    own_system, own = of_member(apart, member)
     numbers, lanes, first = apart.numbers, apart.lanes, apart.now[0]
     for k in range(first, first + own.now.size):
         numbers[member, k] = lanes[k, member]

@@ -1,5 +1,6 @@
 """Arrays for members in lanes that go on alone for a while."""
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -9,19 +10,22 @@ from numpy.typing import NDArray
 from sebody.compiler.choice import way
 from sebody.contract.counts import MEMBERS
 from sebody.engine import loop
-from sebody.engine.lanes.arrays import SHARED, Apart
+from sebody.engine.aid import ADDRESS, CONTEXT
+from sebody.engine.lanes.arrays import SHARED, Apart, empty
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of, record
 from sebody.engine.state import Record, Scheme, State
 from sebody.engine.system import System
+from sebody.runs.aid import Aid
 
 NEVER = 2**62       # grid steps between records of members that are alone
 RECORDS = "control", "clock", "guard"
 
 
 def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes: NDArray,
-              in_lanes: State, routine: int) -> tuple[Apart, list]:
-    """Arrays of eight members, and what else their addresses lead to.
+              in_lanes: State, routine: int, of_matrices: Mapping[str, NDArray],
+              ) -> tuple[Apart, Aid, list]:
+    """Arrays of eight members, their aid, and what else their addresses lead to.
 
     Parameters
     ----------
@@ -36,21 +40,26 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
         The state in lanes.
     routine : int
         Address of the loop for numbers.
+    of_matrices : mapping
+        The places `taken`, `returned` and `carried` of `Apart`.
     """
     one = of[1]
-    numbers = np.zeros((MEMBERS, offsets.size))
-    system = replace(offsets.packed(of[0], numbers[0]), aid=np.zeros_like(of[0].aid))
+    numbers, aids = np.zeros((MEMBERS, offsets.size)), np.zeros((MEMBERS, 2), dtype=np.int64)
+    system = replace(offsets.packed(of[0], numbers[0]), aid=aids[0])
     state = offsets.packed(one, numbers[0])
     numbers[1:] = numbers[0]
     scalars = {name: np.tile(numbers_of(getattr(one, name)), (MEMBERS, 1)) for name in RECORDS}
     state = replace(state, **{name: record(getattr(one, name).dtype, rows[0])
                               for name, rows in scalars.items()})
-    rows = [numbers, *scalars.values()]
+    rows = [numbers, aids, *scalars.values()]
     words = [group.in_rows(rows) for group in (system, state)]
+    aid = Aid([(system.at_row(of_system), state.at_row(of_state))
+               for of_system, of_state in zip(*words, strict=True)], _nothing_to_read)
+    aids[:, ADDRESS], aids[:, CONTEXT] = aid.address, range(MEMBERS)
     unwritten = Record.of(one, 0, NEVER)
     return Apart(
-        places=_places(one, offsets, slots), lanes=lanes, numbers=numbers,
-        now=np.array([offsets.of(one.now).start]),
+        places=_places(one, offsets, slots), **of_matrices, exchanged=empty(1), lanes=lanes,
+        numbers=numbers, now=np.array([offsets.of(one.now).start]),
         changes=np.array([offsets.of(one.changes).start, offsets.of(one.fit).start]), **scalars,
         **{f"{name}_words": _words(getattr(in_lanes, name)) for name in RECORDS},
         **{f"{name}_in_lanes": memory_of(getattr(in_lanes, name), np.float64) for name in RECORDS},
@@ -58,7 +67,11 @@ def new_apart(of: tuple[System, State], offsets: Offsets, slots: NDArray, lanes:
         addresses=np.array([[own[member].ctypes.data for own in words]
                             for member in range(MEMBERS)]),
         system=system, state=state, record=unwritten,
-        routines=np.array([routine, 0])), [*words, *rows]
+        routines=np.array([routine, 0])), aid, [*words, *rows]
+
+
+def _nothing_to_read() -> None:
+    """Read the sensors of members, which the loop reads itself."""
 
 
 def _places(state: State, offsets: Offsets, slots: NDArray) -> NDArray:

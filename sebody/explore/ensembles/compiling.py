@@ -12,7 +12,6 @@ from sebody.compiler.first_run import Job, compile_apart
 from sebody.compiler.workers import Task
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.arrays import Columns, Scratch, empty, in_lanes, numbers
-from sebody.engine.lanes.matrix import Alone
 from sebody.engine.lanes.together import refactorize
 from sebody.engine.offsets import Offsets
 from sebody.engine.scalars import numbers_of
@@ -74,7 +73,7 @@ def compile_groups() -> None:
     given = Beginning(model=floats, floats=floats, copied=pairs, restart=places, slots=places,
                       ends=places, components=places, slopes=floats, kept=places, **scalars,
                       **{f"{name}_built": own for name, own in scalars.items()})
-    groups = new_groups(0, given_to_loop, given, places, folds_of(
+    groups = new_groups(0, given_to_loop, (*smallest(), given), places, folds_of(
         (), (), (), (), reading(Tape()), pairs[:0], 1))
     kinds = tuple(map(typeof, (groups, 0, generalized_alpha(), False, 0, 0)))
     way().compile_for(run_on, kinds)
@@ -87,14 +86,14 @@ def _given_to_loop() -> tuple:
     system, state = smallest()
     offsets = Offsets(system, state)
     buffer = empty(offsets.size)
-    room, places = np.zeros((1, 1)), np.zeros(1, dtype=np.int64)
+    places = np.zeros(1, dtype=np.int64)
     scratch = Scratch(*(empty(1) for _ in range(3)), places, places)
-    alone = Alone(system, state, room[0], room, places, places, room)
     columns = Columns(places, empty(1, 1), places, np.zeros((0, 2), dtype=np.int64),
                       np.zeros((0, 3), dtype=np.int64), places, places, empty(1))
     members = in_lanes(system, offsets, buffer), in_lanes(state, offsets, buffer)
-    apart, _ = new_apart((system, state), offsets, places[:0], numbers(buffer), members[1], 0)
-    return (*members, scratch, alone, new_together(members[1], empty(1)), apart, columns)
+    apart, *_ = new_apart((system, state), offsets, places[:0], numbers(buffer), members[1], 0,
+                          dict.fromkeys(("taken", "returned", "carried"), places))
+    return (*members, scratch, new_together(members[1], empty(1)), apart, columns)
 
 
 def compile_matrices() -> None:

@@ -8,14 +8,13 @@ from numpy.typing import NDArray
 
 from sebody.compiler.choice import way
 from sebody.compiler.decorators import compiled
-from sebody.compiler.inside.lanes import number_of, with_number
+from sebody.compiler.inside.lanes import number_of, spread, with_number
 from sebody.contract.counts import MEMBERS
 from sebody.engine.arrays import Arrays
 from sebody.engine.calls import call_advance_together
 from sebody.engine.lanes import loop
 from sebody.engine.lanes.apart import GAVE_UP, RUNS
 from sebody.engine.lanes.arrays import Apart, Columns, Scratch, numbers
-from sebody.engine.lanes.matrix import Alone
 from sebody.engine.lanes.together import Together
 from sebody.engine.state import DONE, Scheme, State
 from sebody.engine.system import System
@@ -31,7 +30,9 @@ class Groups(Arrays):
     ==================  ============================================================================
     routine             (1,) address of `engine.lanes.loop.advance`
     system to record    its arguments
-    given               what runs begin with, in the arrays of the single run of `alone`
+    single_system,      the single run of the thread, by which members begin
+    single_state
+    given               what they begin with, in its arrays
     places              of what members begin with in the buffer of all numbers
     begun               scalars and counters of a member that has begun, the same for all
     control, clock,     (k,) the memory of those in lanes
@@ -45,10 +46,11 @@ class Groups(Arrays):
     system: System
     state: State
     scratch: Scratch
-    alone: Alone
     together: Together
     apart: Apart
     record: Columns
+    single_system: System
+    single_state: State
     given: Beginning
     places: NDArray
     begun: NDArray
@@ -65,8 +67,8 @@ def address_of_loop(given_to_loop: tuple, scheme: Scheme) -> int:
     return way().address(loop.advance, types.int64, kinds)
 
 
-def new_groups(routine: int, given_to_loop: tuple, given: Beginning, places: NDArray,
-               folds: Folds) -> Groups:
+def new_groups(routine: int, given_to_loop: tuple, single: tuple[System, State, Beginning],
+               places: NDArray, folds: Folds) -> Groups:
     """Arrays that groups are made with.
 
     Parameters
@@ -76,7 +78,7 @@ def new_groups(routine: int, given_to_loop: tuple, given: Beginning, places: NDA
     """
     _, state, *_, record = given_to_loop
     scalars = [memory_of(getattr(state, name), np.int64) for name in RECORDS]
-    return Groups(np.array([routine]), *given_to_loop, given, places, np.concatenate(scalars),
+    return Groups(np.array([routine]), *given_to_loop, *single, places, np.concatenate(scalars),
                   *scalars, numbers(record.rows), folds)
 
 
@@ -97,11 +99,11 @@ def make(groups, changes, scheme, lead, dense, last, values, made):
     made : (runs,)
         Becomes true of these.
     """
-    alone, control = groups.alone, groups.state.control
+    control = groups.state.control
     for first in range(0, changes.shape[0], MEMBERS):
         end = min(first + MEMBERS, changes.shape[0])
-        codes = begin_together(alone.system, alone.state, groups.given, changes[first:end], lead,
-                               dense, groups.places, alone.numbers)
+        codes = begin_together(groups.single_system, groups.single_state, groups.given,
+                               changes[first:end], lead, dense, groups.places, groups.apart.lanes)
         count = 0
         for code in codes:
             count += 1 if code == DONE else 0
@@ -135,7 +137,7 @@ def run_on(groups, count, scheme, dense, reached, last):
     reached = min(last, (reached // every + record.rows.shape[0] - 1) * every)
     control.recorded = 0
     call_advance_together(groups.routine[0], groups.system, groups.state, groups.scratch,
-                          groups.alone, groups.together, groups.apart, record, scheme, reached,
+                          groups.together, groups.apart, record, scheme, reached,
                           dense)
     fold_all(groups.folds, control.recorded, groups.table)
     return reached
@@ -144,7 +146,8 @@ def run_on(groups, count, scheme, dense, reached, last):
 @compiled
 def _begin_members(groups, count):
     """Set the scalars of a group; lanes without a member get the numbers of another one."""
-    lanes, k = groups.alone.numbers, 0
+    lanes, k = groups.apart.lanes, 0
+    groups.apart.exchanged[0] = spread(0.0)
     for place in groups.places:
         for member in range(count, MEMBERS):
             lanes[place, member] = lanes[place, 0]

@@ -16,7 +16,7 @@ from sebody.engine.system import System
 from sebody.explore.ensembles import groups
 from sebody.explore.ensembles.apart import RECORDS, address_of_loop, new_apart
 from sebody.explore.ensembles.groups import Groups, make, new_groups, run_on
-from sebody.explore.ensembles.matrices import alone, carried, places, together
+from sebody.explore.ensembles.matrices import carried, of_matrices, places, together
 from sebody.explore.ensembles.member import Copies, Course
 from sebody.explore.ensembles.member_rows import Rows, new_table, with_places
 from sebody.explore.ensembles.shared_constants import (
@@ -108,17 +108,17 @@ class Lanes:
                           unmoved=empty(one.state.g.size),
                           table=table, kept=rows.kept)
         own = np.concatenate([image.lines.slots.astype(np.int64), carried(image)])
-        apart, runs_apart = new_apart(
+        apart, self._aid, runs_apart = new_apart(
             (one.system, one.state), image.offsets, own, self._numbers, state,
-            address_of_loop(one.system, one.state, copies.scheme))
+            address_of_loop(one.system, one.state, copies.scheme), of_matrices(image))
         self._record = record = self._new_record()
-        made_alone = alone(copies, self._numbers)
         if copies.sampling.samples:
-            apart.routines[1] = samples.address((system, state, scratch, made_alone, apart))
-        given_to_loop = (system, state, scratch, made_alone,
+            apart.routines[1] = samples.address((system, state, scratch, apart))
+        given_to_loop = (system, state, scratch,
                          together(image, system, state, scratch.frames), apart, record)
         found = new_groups(groups.address_of_loop(given_to_loop, copies.scheme), given_to_loop,
-                           copies.given, self._own_places(), self._new_folds())
+                           (copies.system, copies.state, copies.given), self._own_places(),
+                           self._new_folds())
         return found, [shared, pointed, runs_apart]
 
     def _new_record(self) -> Columns:
@@ -206,6 +206,7 @@ class Lanes:
         found = self._no_values(len(runs))
         make(self._groups, changes, copies.scheme, lead(copies.scheme), copies.dense, self._last,
              found, made)
+        self._aid.check()
         self._write_folded(found[made], runs[made], values)
         self._reached = self._last
         return made
@@ -240,6 +241,7 @@ class Lanes:
         while reached < self._last:
             reached = run_on(self._groups, count, copies.scheme, copies.dense, reached,
                              min(self._last, reached + MOST_STEPS))
+            self._aid.check()
             gave_up = self._reason[:count] == GAVE_UP
             if self._others:
                 self._take_others((~gave_up).nonzero()[0])

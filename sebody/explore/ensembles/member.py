@@ -49,7 +49,7 @@ class Copies:
         self.system, self.state = arrays_of_run(one.system, one.state, image.offsets,
                                                 self.floats)
         self.sampling = Sampling(one.model, one.numbering, self.system, self.state)
-        self.aid = Aid(self.system, self.state, self.sampling.read_sensors)
+        self.aid = Aid.of(self.system, self.state, self.sampling.read_sensors)
         self.model, self.numbering, self.scheme = one.model, one.numbering, one.scheme
         self.given = self._beginning()
         self._record: Record | None = None
