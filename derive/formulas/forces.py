@@ -1,10 +1,13 @@
 """Loads, springs and dampers, from their virtual work, energy and dissipation."""
 
+from typing import NamedTuple
+
 import sympy as sp
 
 from sebody.derive.form.spaces import Space
 from sebody.derive.formulas.elements import (
     AMPLITUDE,
+    Block,
     Constant,
     Element,
     amplitude,
@@ -138,16 +141,50 @@ def bearing(planar: bool) -> Element:
     return _between_axes(planar, True)
 
 
+class Measures(NamedTuple):
+    """Stretches and turns between two bodies along axes of the first one, and their rates."""
+
+    blocks: tuple[Block, ...]       # positions, then rotations
+    axes: list[Constant]
+    free: list[Constant]
+    stretch: list[sp.Expr]
+    turn: list[sp.Expr]             # of all three axes
+    rates: tuple[list[sp.Expr], list[sp.Expr]]
+    directions: tuple[list[sp.Expr], list[sp.Expr]]     # the same, of variations
+
+
 def _between_axes(planar: bool, coupled: bool) -> Element:
     space = Space(planar)
-    own = [constant(space, f"e{k}", "vector", "direction of an axis, in axes of body a")
-           for k in range(1, 3 if planar else 4)]
+    by = measures(space)
     each = [constant(space, "k", "vector", "stiffness along each axis"),
             constant(space, "c", "vector", "damping along each axis"),
             constant(space, "kt", "axial", "stiffness about each axis"),
             constant(space, "ct", "axial", "damping about each axis")]
+    couplings = _couplings(space) if coupled else {}
+    u, w, (du, dw), (vu, vw) = by.stretch, by.turn, by.rates, by.directions
+    k, c, kt, ct = (q.symbols for q in each)
+
+    def quadratic(coefficients, values):
+        return sum(a * value**2 for a, value in zip(coefficients, values, strict=True)) / 2
+
+    strain, stiff = _coupled(couplings, "k", u, w, vu, vw) if coupled else (0, 0)
+    dissipation, damped = _coupled(couplings, "c", du, dw, vu, vw) if coupled else (0, 0)
+    what = "bearing" if coupled else "bushing"
+    return element("planar_" * planar + what, "springs and dampers along and about axes"
+                   + ", coupled" * coupled,
+                   space, by.blocks, (*each, *couplings.values(), *by.free, *by.axes),
+                   strain=quadratic(k, u) + quadratic(kt, w) + strain,
+                   dissipation=quadratic(c, du) + quadratic(ct, dw) + dissipation,
+                   load=sp.sympify(stiff + damped))
+
+
+def measures(space: Space) -> Measures:
+    """Stretches and turns of a bushing, see `bushing`."""
+    planar = space.planar
+    own = [constant(space, f"e{k}", "vector", "direction of an axis, in axes of body a")
+           for k in range(1, 3 if planar else 4)]
     axes = [*(q.symbols for q in own), *[sp.Matrix([0, 0, 1])] * planar]
-    couplings, free = _couplings(space) if coupled else {}, []
+    free: list[Constant] = []
     xa, xb = position(space, "a"), position(space, "b")
     ra, rb = rotation(space, "a"), rotation(space, "b")
     Ra = ra.state.symbols
@@ -168,22 +205,8 @@ def _between_axes(planar: bool, coupled: bool) -> Element:
             spin = (1 - n.dot(n)) * spin + n * n.dot(spin) + cross(n, cross(spin, Q * n))
         return [e.dot(du) for e in axes], [e.dot(spin) for e in axes]
 
-    u, w = [e.dot(stretch) for e in axes], [e.dot(turn) for e in axes]
-    (du, dw), (vu, vw) = along("rate"), along("direction")
-    k, c, kt, ct = (q.symbols for q in each)
-
-    def quadratic(coefficients, values):
-        return sum(a * value**2 for a, value in zip(coefficients, values, strict=True)) / 2
-
-    strain, stiff = _coupled(couplings, "k", u, w, vu, vw) if coupled else (0, 0)
-    dissipation, damped = _coupled(couplings, "c", du, dw, vu, vw) if coupled else (0, 0)
-    what = "bearing" if coupled else "bushing"
-    return element("planar_" * planar + what, "springs and dampers along and about axes"
-                   + ", coupled" * coupled,
-                   space, (xa, xb, ra, rb), (*each, *couplings.values(), *free, *own),
-                   strain=quadratic(k, u) + quadratic(kt, w) + strain,
-                   dissipation=quadratic(c, du) + quadratic(ct, dw) + dissipation,
-                   load=sp.sympify(stiff + damped))
+    return Measures((xa, xb, ra, rb), own, free, [e.dot(stretch) for e in axes],
+                    [e.dot(turn) for e in axes], along("rate"), along("direction"))
 
 
 def _couplings(space: Space) -> dict[str, Constant]:

@@ -18,6 +18,7 @@ from sebody.derive.formulas.elements import (
     rotation,
     tabled,
 )
+from sebody.derive.formulas.forces import measures
 from sebody.derive.symbolic.rotations import cross
 from sebody.kernels.tables import SIZE
 
@@ -58,11 +59,27 @@ def torsion_spring(planar: bool) -> Element:
                    strain=strain, dissipation=dissipation, memory=memory)
 
 
-def _laws(before: list[Constant], u: sp.Expr, rate: sp.Expr
+def bushing(planar: bool) -> Element:
+    """A bushing with laws along and about its axes, see `forces.bushing`."""
+    space = Space(planar)
+    by, d = measures(space), 2 if planar else 3
+    # in a plane the axis of turns is the third one
+    ways = [(f"{k + 1}", by.stretch[k], by.rates[0][k]) for k in range(d)]
+    turns = [(f"t{k + 1}", by.turn[k], by.rates[1][k]) for k in ((2,) if planar else range(3))]
+    constants, strain, dissipation = [*by.free, *by.axes], sp.S.Zero, sp.S.Zero
+    for key, value, rate in (*ways, *turns):
+        constants, of_force, of_damper = _laws(constants, value, rate, key)
+        strain, dissipation = strain + of_force, dissipation + of_damper
+    return element("planar_" * planar + "table_bushing",
+                   "springs and dampers along and about axes, by tables", space, by.blocks,
+                   constants, strain=strain, dissipation=dissipation)
+
+
+def _laws(before: list[Constant], u: sp.Expr, rate: sp.Expr, of: str = ""
           ) -> tuple[list[Constant], sp.Expr, sp.Expr]:
     """Constants with both tables, energy and dissipation."""
     first = sum(len(one.quantity.kept) for one in before)
-    tables = [Constant(Quantity(name, "table", "element", None,
-                                sp.Matrix(sp.symbols(f"{name}_0:{SIZE}"))), f"table of the {what}")
+    tables = [Constant(Quantity(name + of, "table", "element", None, sp.Matrix(
+                  sp.symbols(f"{name}{of}_0:{SIZE}"))), f"table of the {what}")
               for name, what in (("force", "force"), ("damper", "force of the damper"))]
     return [*before, *tables], tabled(u, 0, first), tabled(rate, 0, first + SIZE)

@@ -65,7 +65,7 @@ SMOOTH = {          # joints, bodies and forces whose column is written in the u
     "spring": lambda: forces.spring(False),
     "planar_spring": lambda: forces.spring(True),
     **{"planar_" * planar + f"table_{make.__name__}": partial(make, planar)
-       for make in (table_springs.spring, table_springs.torsion_spring)
+       for make in (table_springs.spring, table_springs.torsion_spring, table_springs.bushing)
        for planar in (False, True)},
     "torsion_spring": lambda: forces.torsion_spring(False),
     "planar_torsion_spring": lambda: forces.torsion_spring(True),

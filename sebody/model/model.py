@@ -13,6 +13,7 @@ from sebody.model import (
     actuators,
     beams,
     bodies,
+    bushings,
     contacts,
     controllers,
     couplings,
@@ -138,7 +139,7 @@ class Model(Mechanism):
 
     spring = springs.spring
     torsion_spring = springs.torsion_spring
-    bushing = springs.bushing
+    bushing = bushings.bushing
 
     friction = frictions.friction
     stop = contacts.stop

@@ -7,9 +7,9 @@ from typing import cast
 import numpy as np
 
 from sebody.basics.errors import InputError
+from sebody.model.bushings import by_tables, table_constants
 from sebody.model.model import Model
 from sebody.model.parts import Element
-from sebody.model.springs import by_tables, table_constants
 from sebody.model.variants.copying import copied
 from sebody.runs.rotating_frame import Spin
 

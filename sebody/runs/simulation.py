@@ -18,9 +18,9 @@ from sebody.basics.progress import showing
 from sebody.engine.routines import addresses
 from sebody.engine.state import ASKED, CHUNK, DONE, FAILED, Record, Scheme, State
 from sebody.engine.system import System
+from sebody.model.bushings import refuse_tables
 from sebody.model.control_order import misspelt
 from sebody.model.model import Model
-from sebody.model.springs import refuse_tables
 from sebody.model.summary import summary
 from sebody.results.recording import Start
 from sebody.results.result import Result

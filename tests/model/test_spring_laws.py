@@ -218,10 +218,10 @@ def test_refused(tmp_path):
     ("damping", {"damping": (1.0, lambda rate: rate**3, 1.0)}),
     ("turning_stiffness", {"turning_stiffness": "law.csv"})])
 def test_laws_of_bushings_are_refused(named, given):
-    """Of springs along and about their axes they are not."""
+    """Laws of their axes are not."""
     model = Model()
     model.node("a", PLACE)
     with pytest.raises(InputError, match=rf"bushing at 'a' has a law by {named}=.*"
-                       r"spring\(force=.*torsion_spring\(force="):
+                       r"give it to an axis, laws=\{"):
         model.bushing("a", **given)
     assert not model.loads

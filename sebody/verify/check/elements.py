@@ -65,15 +65,18 @@ def element_case(module: ModuleType, seed: int) -> Case:
 def _constants(module: ModuleType, size: int, random: np.random.Generator) -> NDArray:
     """Numbers about one; rows of tables ascend over the elongations of these states.
 
+    Of several laws, whose rows differences would pass now and then, each is one cubic.
     Dampers are linear, as other criteria have them; `curved_damper` is of one that is not.
     """
     constants = 1.0 + 0.5 * random.uniform(-1, 1, size=max(size, 1))
-    for name, part in Row(module.__name__, module.CONSTANTS).slices({}).items():
-        if part.stop - part.start == SIZE:
-            forces, slopes = random.normal(size=(2, 6))
-            law = (Law.straight(abs(forces[0])) if name == "damper" else
-                   Law(np.linspace(-4.0, 3.0, 6), forces, slopes, slopes))
-            constants[part] = law.packed()
+    tables = {name: part for name, part in Row(module.__name__, module.CONSTANTS).slices({}).items()
+              if part.stop - part.start == SIZE}
+    places = np.linspace(-4.0, 3.0, 6) if len(tables) == 2 else np.array([-20.0, 20.0])
+    for name, part in tables.items():
+        forces, slopes = random.normal(size=(2, len(places)))
+        law = (Law.straight(abs(forces[0])) if name.startswith("damper") else
+               Law(places, forces, slopes, slopes))
+        constants[part] = law.packed()
     return constants
 
 
@@ -162,11 +165,18 @@ def _symmetric(case: Case) -> NDArray:
     return constants
 
 
+def _dampers(module: ModuleType) -> list[slice]:
+    """Places of the tables of dampers."""
+    return [part for name, part in Row(module.__name__, module.CONSTANTS).slices({}).items()
+            if name.startswith("damper") and part.stop - part.start == SIZE]
+
+
 def curved_damper(case: Case) -> float:
     """Velocity tangent of a damper by a table against differences in small steps of the rates."""
     constants = case.constants.copy()
     law = Law(np.array([-20.0, 20.0]), np.array([-14.0, 18.0]), *np.array([[2.0, 0.7]] * 2))
-    constants[Row(case.module.__name__, case.module.CONSTANTS).slices({})["damper"]] = law.packed()
+    for part in _dampers(case.module):
+        constants[part] = law.packed()
     case = case._replace(constants=constants)
     exact = [derivative(lambda s, d=d: evaluate(case._replace(v=case.v + s * d), RESIDUAL)[0], 0.1)
              for d in np.eye(case.n)]
@@ -212,7 +222,7 @@ def criteria(module: ModuleType) -> dict:
                    "tangent, mass": tangent_mass}
     else:
         chosen |= {"power": power, "force = dV/dq": force_at_rest}
-    if "damper" in Row(module.__name__, module.CONSTANTS).slices({}):
+    if _dampers(module):
         chosen |= {"tangent, velocity, of a curved damper": curved_damper}
     return chosen | {"tangent, velocity": tangent_rate}
 
