@@ -98,7 +98,7 @@ def write(directory: Path, files: dict[str, str]) -> list[str]:
 
 
 def differences(directory: Path, files: dict[str, str], orphans: bool = True) -> list[str]:
-    """What `--check` prints: diffs of stale files, names of missing and orphaned ones."""
+    """The output of `--check`: diffs of stale files, names of missing and orphaned ones."""
     out = []
     for name, text in files.items():
         path = directory / name

@@ -57,7 +57,7 @@ class Products(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """How kernels of a kind are compiled; see `compile_kernel`."""
+    """The compilation of kernels of a kind; see `compile_kernel`."""
 
     derive: Callable
     linearize: Callable
@@ -122,7 +122,7 @@ def statements_of(kernel: Variant | Products | str) -> Kernel:
 
 
 def stages_of(kernel: Variant | Products | str) -> Stages:
-    """How a kernel is compiled."""
+    """The compilation of a kernel."""
     if isinstance(kernel, Products):
         return _of_products(kernel)
     if isinstance(kernel, Variant):
@@ -147,7 +147,7 @@ def _of_products(kernel: Products) -> Stages:
 
 
 def _products_element(element: elements.Element) -> Kernel:
-    """Of a joint, body or load; laws are made of stages."""
+    """The products of a joint, body or load; laws are made of stages."""
     return products_law(element) if element.stages else products_element(element)
 
 

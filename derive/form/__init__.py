@@ -1,1 +1,1 @@
-"""What a kernel is made of: typed numbers, arrays, functions, steps and statements."""
+"""The parts of a kernel: typed numbers, arrays, functions, steps and statements."""

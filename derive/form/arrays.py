@@ -11,7 +11,7 @@ from sebody.derive.form.whole import Count, Number, Stored, Whole, whole
 
 
 class Held(Enum):
-    """Where the numbers of an array are."""
+    """Kinds of memory that hold an array."""
 
     SCRATCH = auto()        # memory that the kernel asks for
     CONSTANTS = auto()      # the row of constants of an element
@@ -41,7 +41,7 @@ class Array:
         return Stored(self, whole(place)) if self.whole else Entry(self, whole(place))
 
     def at(self, first: Whole | int) -> "Array | View":
-        """What begins at a place."""
+        """The array that begins at a place."""
         return View(self, whole(first)) if whole(first) != Number(0) else self
 
     def renamed(self, name: str) -> "Array":
@@ -62,20 +62,20 @@ class View:
     first: Whole
 
     def at(self, first: Whole | int) -> "Array | View":
-        """What begins at a place of it."""
+        """The array that begins at a place of it."""
         return self.array.at(self.first + first)
 
 
 @dataclass(frozen=True)
 class Place:
-    """Where the components of a quantity are: the k-th at ``start + (first + k) stride``."""
+    """The places of a quantity's components: the k-th at ``start + (first + k) stride``."""
 
     start: Whole | int = 0
     stride: Whole | int = 1
     first: int = 0
 
     def of(self, k: int) -> Whole:
-        """Of one component."""
+        """The place of one component."""
         steps = (self.first + k) * whole(self.stride)
         return steps + self.start if self.stride != 1 else whole(self.start) + steps
 

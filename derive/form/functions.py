@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class Use(Enum):
-    """What a function does with an operand."""
+    """Uses of an operand by a function."""
 
     READ = auto()           # an array
     WRITE = auto()          # an array; its numbers before do not matter
@@ -20,12 +20,12 @@ class Use(Enum):
 
     @property
     def of_array(self) -> bool:
-        """Whether the operand is an array."""
+        """Tell if the operand is an array."""
         return self not in (Use.WHOLE, Use.REAL)
 
 
 class Gives(Enum):
-    """What a function returns."""
+    """Kinds of results of a function."""
 
     NOTHING = auto()
     STATUS = auto()         # a whole number: OK, or why the kernel ends here

@@ -1,4 +1,4 @@
-"""What carries values, and the loops that go through it: homes of quantities and stages."""
+"""Carriers of values, and the loops that go through them: homes of quantities and stages."""
 
 from typing import NamedTuple
 

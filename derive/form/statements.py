@@ -37,7 +37,7 @@ class Zero(NamedTuple):
 
 
 class Change(Enum):
-    """How a target is changed by a value."""
+    """Operators that change a target by a value."""
 
     ADD = "+="
     SUBTRACT = "-="

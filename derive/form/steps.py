@@ -19,7 +19,7 @@ from sebody.derive.form.whole import Count, Whole
 
 
 class Role(Enum):
-    """How the linearization treats a stage."""
+    """Treatments of a stage by the linearization."""
 
     PLAIN = auto()          # by the chain rule
     BY_RULE = auto()        # its differential is among the rules: nothing to compute
@@ -72,7 +72,7 @@ class Product(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """What every one of some carriers adds to a vector."""
+    """A sum over carriers that is added to a vector."""
 
     over: str                           # a home, see `loops`
     summand: sp.Matrix
@@ -107,7 +107,7 @@ class Solve(NamedTuple):
         return None if value.free_symbols else value
 
     def right_side(self, part: Sum, space: Space) -> list[sp.Expr]:
-        """What one summand adds to the right-hand side."""
+        """The part of one summand in the right-hand side."""
         zero = {s: 0 for s in self.unknown.kept}
         return [-e for e in space.components("axial", part.summand.subs(zero))]
 
@@ -119,7 +119,7 @@ class Invert(NamedTuple):
 
     @property
     def title(self) -> str:
-        """What the matrix belongs to."""
+        """The name of the matrix, by its equation."""
         return "matrix of: " + self.equation.title
 
 
@@ -162,7 +162,7 @@ class Values(NamedTuple):
 
     @property
     def over(self) -> str:
-        """Where there is one value each."""
+        """The home of the values: each of its carriers has one."""
         return self.of.home
 
 

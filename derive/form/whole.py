@@ -29,7 +29,7 @@ class Whole:
         return whole(other) * self
 
     def parts(self) -> tuple:
-        """What it is made of: other whole numbers, and whatever it reads."""
+        """The parts it is made of: other whole numbers, and whatever it reads."""
         return ()
 
     def rebuilt(self, change: "Change") -> "Whole":
@@ -93,7 +93,7 @@ class Times(Whole):
 
 @dataclass(frozen=True)
 class Quotient(Whole):
-    """What is left of a division without the rest; the dividend is not negative."""
+    """A quotient without the rest; the dividend is not negative."""
 
     dividend: Whole
     divisor: Whole

@@ -31,7 +31,7 @@ from sebody.derive.symbolic.variation import differential
 
 
 class Way(NamedTuple):
-    """What an actuator moves along."""
+    """The coordinate that an actuator moves."""
 
     blocks: tuple[Block, ...]
     constants: list[Constant]

@@ -93,6 +93,6 @@ def _column(q: Quantities, chosen: Frame, on_rotations: Stage, on_modes: Stage) 
 
 
 def _amplitude(space: Space) -> sp.Symbol:
-    """Of the time function, at its power port."""
+    """The time function's value, at its power port."""
     return space.quantity("amplitude", "scalar", "element", arrays.loads,
                           Place(3 * arrays.index[first + agreed("AT_PORT")])).symbols[0]

@@ -69,7 +69,7 @@ class tabled(sp.Function):  # noqa: N801  (as functions of SymPy)
 
     @property
     def table(self) -> View:
-        """Where the numbers are."""
+        """The array of the numbers."""
         return pointed("constant").at(int(self.args[2]))
 
 

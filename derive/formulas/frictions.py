@@ -62,7 +62,7 @@ def friction_turn(planar: bool, read: tuple[int, int]) -> Element:
 
 def _pressed(axis: sp.Matrix, across: sp.Symbol, along: sp.Symbol, forces: Sequence[sp.Symbol]
              ) -> sp.Expr:
-    """What a force in global axes presses with in a bearing: across its axis, along it or both.
+    """The pressing part of a force in global axes on a bearing: across its axis, along it or both.
 
     ``sqrt(across |f - a (a . f)|^2 + along (a . f)^2)``
     """
@@ -73,7 +73,7 @@ def _pressed(axis: sp.Matrix, across: sp.Symbol, along: sp.Symbol, forces: Seque
 
 
 def turn_vectors(space: Space, of: str = "") -> list[Constant]:
-    """What an angle in space is read from."""
+    """Vectors from which an angle in space is read."""
     return [constant(space, "d" + of, "vector", "direction normal to the axis, in axes of body a"),
             constant(space, "n" + of, "vector", "where it is at angle zero, in axes of body b"),
             constant(space, "m" + of, "vector", "and at a right angle, in axes of body b")]

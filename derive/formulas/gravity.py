@@ -28,7 +28,7 @@ TAKEN_OFF = Shift("force conjugate to y, elastic and gravity", arrays.s, arrays.
 
 
 class Gravity(NamedTuple):
-    """What gravity contributes to a kernel."""
+    """The parts of gravity in a kernel."""
 
     before: tuple[Step, ...]        # field in frame axes, first moment of mass; once y is known
     products: tuple[Step, ...]      # forces conjugate to y, taken off the elastic ones

@@ -295,7 +295,7 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
 
 
 class LoadSteps(NamedTuple):
-    """Of forces that move along a path, likewise."""
+    """Steps of forces that move along a path, likewise."""
 
     q: Quantities
     residual: tuple[Step, ...]

@@ -1,1 +1,1 @@
-"""What a kernel is: its steps in order, its name, and which kernels are shipped."""
+"""Definition of a kernel: its steps in order, its name, and which kernels are shipped."""

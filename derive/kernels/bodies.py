@@ -1,4 +1,4 @@
-"""What kernels of bodies do around their steps: counts, pointers, gathering, columns of the matrix.
+"""Surroundings of the steps of bodies: counts, pointers, gathering, columns of the matrix.
 """
 
 import sympy as sp
@@ -105,7 +105,7 @@ def _seeds(planar: bool, directions: tuple[Array, ...]) -> tuple[Statement, ...]
 
 
 def port() -> Whole:
-    """Where the power of an element is among the energies."""
+    """The place of an element's power among the energies."""
     return agreed("POWERS") + ARGUMENTS["index"][counts.first + agreed("AT_PORT")]
 
 

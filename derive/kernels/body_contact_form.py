@@ -103,7 +103,7 @@ def _pointers(reference: bool) -> tuple[Statement, ...]:
 
 
 def _behind(kernel: BodyContact, planar: bool) -> Array | View:
-    """Where the constants of the law are: behind the others."""
+    """The place of the constants of the law: behind the others."""
     last = chain(kernel.constants, planar, {})[-1]
     return last.array.at(size_of("position", planar))
 
@@ -185,7 +185,7 @@ class _Law:
         return (*statements, *staged_moves, *linear), start
 
     def _targets(self, g: Array, point: str = "Fp") -> list[Target]:
-        """Where the force goes: on the point in variables, on the surface's node in place."""
+        """The targets of the force: the point in variables, the surface's node in place."""
         return [*(sp.Symbol(f"{point}_{axis}") for axis in "xyz"[:self.size]),
                 *(g[at] for at in self.place)]
 

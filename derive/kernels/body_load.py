@@ -47,7 +47,7 @@ class BodyLoad(NamedTuple):
 
     @property
     def behind(self) -> tuple[Let | Point, ...]:
-        """What stands behind the index row: place of the amplitudes of a series, their number."""
+        """The numbers behind the index row: place of the amplitudes of a series, their count."""
         return (Let((counts.series,), (arrays.unknowns[counts.n + 1],)),
                 Point(AMPLITUDES, ARGUMENTS["loads"].at(arrays.unknowns[counts.n])))
 

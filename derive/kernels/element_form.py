@@ -61,7 +61,7 @@ def element_form(element: Element) -> Kernel:
 
 
 def places(element: Element) -> tuple[Statement, ...]:
-    """Where an element's nodes, unknowns and constants are."""
+    """The places of an element's nodes, unknowns and constants."""
     index, first = ARGUMENTS["index"], counts.first
     constants = ARGUMENTS["constants"].at(index[first + agreed("AT_CONSTANTS")])
     return (Let((first,), (counts.element * counts.stride,)),

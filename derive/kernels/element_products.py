@@ -34,7 +34,7 @@ DERIVATIVES = "c_stiffness", "c_damping", "c_mass"      # in the order of the ve
 
 
 def products_element(element: Element) -> Kernel:
-    """Of a linearized joint, body or load."""
+    """Products of a linearized joint, body or load."""
     width = len(element.residual)
     residual, _ = stored(element.residual, [arrays.g[k] for k in range(width)], 0)
     along, back = _along(element), _transposed(element)

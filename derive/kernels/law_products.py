@@ -57,7 +57,7 @@ class Changes(NamedTuple):
 
 
 def products_law(element: Element) -> Kernel:
-    """Of an element of laws."""
+    """Products of an element of laws."""
     changes, width = _changes(element), len(element.residual)
     element = element._replace(slopes=(), moves=(), linear=())
     stages, count = staged(element.stages, 0)

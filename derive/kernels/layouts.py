@@ -95,7 +95,7 @@ class Layout(NamedTuple):
 
 
 def fits(layout: Layout, frame: FrameTraits) -> bool:
-    """Whether a layout can carry a frame; a general one has nodes enough for any."""
+    """Tell if a layout can carry a frame; a general one has nodes enough for any."""
     if layout.nodes is None:
         return frame.planar or not layout.planar
     return ((layout.rotations > 0 or not frame.needs_rotations)

@@ -62,7 +62,7 @@ def chain(parts: tuple[Part, ...], planar: bool, read: dict[Array, tuple[Let, ..
 
 
 def size_of(part: Part, planar: bool) -> Whole:
-    """How many numbers a part of the constants takes; counts of the space are numbers."""
+    """The count of numbers that a part of the constants takes; counts of the space are numbers."""
     known = {Count(name): number for name, number in axes_of(planar).items()}
     sizes = [replaced(Count(size), known) if isinstance(size, str) else whole(size)
              for size in part.shape]

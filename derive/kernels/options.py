@@ -23,17 +23,17 @@ INERTIA_OPTIONS = {
 
 
 def frame_traits() -> dict[str, FrameTraits]:
-    """What each frame needs."""
+    """The declared traits of each frame."""
     return {name: option.traits for name, option in FRAMES.items()}
 
 
 def frame_conditions() -> dict[tuple[str, bool], Condition]:
-    """What local coordinates obey in each frame that says it, in space and in a plane."""
+    """The conditions on local coordinates in each frame that says them, in space and in a plane."""
     return {(name, planar): option.condition(Quantities(Space(planar)))
             for name, option in FRAMES.items() if option.condition
             for planar in (False, True) if option.traits.planar or not planar}
 
 
 def inertia_traits() -> dict[str, InertiaTraits]:
-    """What each inertia option needs."""
+    """The declared traits of each inertia option."""
     return {name: option.traits for name, option in INERTIA_OPTIONS.items()}

@@ -47,12 +47,12 @@ class BodyPath(NamedTuple):
 
     @property
     def turns(self) -> bool:
-        """Of a node that turns with the path."""
+        """Tell if the kernel is of a node that turns with the path."""
         return self.name in PATH_TURNS
 
     @property
     def across(self) -> bool:
-        """Of a point that the path holds in one direction."""
+        """Tell if the kernel is of a point that the path holds in one direction."""
         return self.name in PATH_ACROSS
 
     @property

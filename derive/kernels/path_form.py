@@ -115,7 +115,7 @@ def _pointers(carriers: int = 0) -> tuple[Statement, ...]:
 
 
 class _Own:
-    """What comes behind the coordinates of the body, in components."""
+    """Numbers behind the coordinates of the body, in components."""
 
     def __init__(self, kernel: BodyPath) -> None:
         planar = kernel.layout.planar

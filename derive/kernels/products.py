@@ -49,7 +49,7 @@ ROWS = 4        # of `VECTORS`: forces, and one for each of the directions
 
 
 def products_superelement(kernel: Superelement) -> Kernel:
-    """Of a linearized superelement."""
+    """Products of a linearized superelement."""
     layout = kernel.layout
     n = counts.width if layout.modes is None else whole(layout.first_mode + layout.modes)
     before = Lowering(kernel.space, kernel.names, arrows=layout.modes is None)
@@ -58,7 +58,7 @@ def products_superelement(kernel: Superelement) -> Kernel:
 
 
 def products_body_load(kernel: BodyLoad) -> Kernel:
-    """Of a load on a body: it depends on the motion alone."""
+    """Products of a load on a body: it depends on the motion alone."""
     before = Lowering(kernel.space, kernel.names)
     return _products(element_name(kernel.name), kernel, before, counts.width, kernel.layout, 0, {},
                      {})

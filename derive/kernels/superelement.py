@@ -75,7 +75,7 @@ class Superelement(NamedTuple):
 
     @property
     def space(self) -> Space:
-        """Where it moves."""
+        """The space in which it moves."""
         return self.formulas.q.space
 
     @property

@@ -108,7 +108,7 @@ def _sizes(kernel: Superelement, memory: Memory) -> tuple[Let, Let]:
 
 
 def filled(statements: Iterable[Statement]) -> tuple[Let, ...]:
-    """Where products leave out zeros: how many rows and columns are filled."""
+    """Counts of filled rows and columns, for products that leave out zeros."""
     if counts.filled not in uses(statements).counts:
         return ()
     return (Let((counts.filled,), (Truncated(arrays.full[0]),)),)

@@ -1,1 +1,1 @@
-"""What is done with the steps and statements of a kernel, whatever it is of."""
+"""Passes over the steps and statements of a kernel, whatever it is of."""

@@ -11,7 +11,7 @@ from sebody.derive.form.statements import For, If, Invoke, Set, Statement, Updat
 
 def carried(before: Iterable[Statement], parts: Iterable[Iterable[Statement]], kept: Array
             ) -> tuple[tuple[Set, ...], list[tuple[Set, ...]], int]:
-    """What keeps scalars behind some statements, and what finds them before each of others.
+    """Statements that keep scalars behind some others, and that find them before each of others.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def carried(before: Iterable[Statement], parts: Iterable[Iterable[Statement]], k
 
 
 def _is_own(symbol: sp.Symbol, is_read: bool, own: set[sp.Symbol]) -> bool:
-    """Whether a scalar was set by the same statements before."""
+    """Tell if a scalar was set by the same statements before."""
     if not is_read:
         own.add(symbol)
     return symbol in own

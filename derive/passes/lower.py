@@ -131,7 +131,7 @@ class Lowering:
         return Set(kept, tuple(self.target(quantity, s) for s in kept))
 
     def target(self, quantity: Quantity, symbol: sp.Symbol) -> Target:
-        """Where a component is: a local variable, or an entry of an array."""
+        """The place of a component: a local variable, or an entry of an array."""
         if not quantity.array:
             return symbol
         return quantity.array[self.place(quantity, quantity.kept.index(symbol))]
@@ -187,7 +187,7 @@ class Lowering:
         return [Zero(tuple(e.symbol for e in entries))] if entries else []
 
     def _matrix(self, step: Solve, part: Sum) -> list[Entry]:
-        """What one summand adds to the matrix, where its sum is not known beforehand."""
+        """The summand in the matrix, where its sum is not known beforehand."""
         if step.known_matrix(self.space) is not None:
             return []
         matrix = step.matrix(part, self.space)
@@ -268,7 +268,7 @@ def _shared(expressions: tuple, start: int) -> tuple[list, list]:
 
 
 def _by_dof_block(quantity: Quantity) -> bool:
-    """Whether its values stand in blocks (or pairs), node after node, or follow their places."""
+    """Tell if its values stand in blocks (or pairs), node after node, or follow their places."""
     if not quantity.array or quantity.home not in DOF_BLOCKS:
         return False
     if quantity.place is None:

@@ -62,7 +62,7 @@ class Reversed(NamedTuple):
 
 def transposed_forms(values: Iterable[sp.Expr], bars: Iterable[sp.Expr],
                      inputs: Iterable[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
-    """What linear forms give to the bars of their inputs; inputs without any are left out.
+    """The bars that linear forms give to their inputs; inputs without any are left out.
 
     Raises
     ------

@@ -58,7 +58,7 @@ def _follow_changes(Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height, _) -> tuple
 
 
 class Transpose(NamedTuple):
-    """How a function's calls are transposed."""
+    """The transposed calls of a function."""
 
     steps: Callable[..., tuple[Step, ...]]      # of the operands, and constants by their transposes
     length: Callable[..., Whole]                # how many numbers a call writes, of the operands

@@ -1,4 +1,4 @@
-"""What some statements use: arrays, functions and numbers, each once and in the order of use."""
+"""Uses of some statements: arrays, functions and numbers, each once and in the order of use."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
@@ -25,7 +25,7 @@ ROOT = sp.Rational(1, 2)
 
 
 class Uses(NamedTuple):
-    """What a target must provide."""
+    """Arrays, functions and numbers that a target must provide."""
 
     arrays: tuple[Array, ...]
     views: tuple[View, ...]

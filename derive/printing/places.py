@@ -23,7 +23,7 @@ from sebody.derive.form.whole import (
 
 
 class Words(NamedTuple):
-    """What differs between targets."""
+    """Differences between targets."""
 
     quotient: str               # of two numbers, as a format
     largest: str                # likewise

@@ -161,7 +161,7 @@ def _body_batches(model: Mechanism, numbering: Numbering, constants: _Constants)
 
 def _constants_of(body: Superelement, known: dict[tuple, tuple[int, int]],
                   constants: _Constants) -> tuple[int, int]:
-    """Where the constants of a superelement begin, and beyond which row a matrix is diagonal."""
+    """The start of a superelement's constants, and the row beyond which a matrix is diagonal."""
     key = constants_key(body)
     if key not in known:
         kernel, how = load(body.kernel), key[1:]
@@ -317,7 +317,7 @@ def _carrier(element: Element) -> str:
 
 
 def _kept_at(numbering: Numbering, element: Element, otherwise: int) -> int:
-    """Where the numbers begin that an element keeps from step to step."""
+    """The start of the numbers that an element keeps from step to step."""
     own = numbering.memories.get(element)
     return otherwise if own is None else own[0]
 

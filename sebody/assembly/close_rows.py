@@ -140,7 +140,7 @@ def of_steps(time_function: TimeFunction, jumps: Sequence[float], grid: Grid
 
 
 def stretches(time_function: TimeFunction, grid: Grid) -> Stretches | None:
-    """Where close corners are, of a load that is no compiled function; None if nowhere."""
+    """Places of close corners of a load that is no compiled function; None if there are none."""
     covered = _covered(close_corners(time_function, grid), grid)
     if not covered:
         return None

@@ -170,7 +170,7 @@ def index_row(name: str, kernel: ModuleType, unknowns: list[int], nodes: list[in
 
 
 def positions_of(element: Element) -> int:
-    """How many positions an element is on; an internal mode counts as one.
+    """The number of positions an element is on; an internal mode counts as one.
 
     Of a contact inside a body, or a point on a path, those of the body.
     """

@@ -156,7 +156,7 @@ def _together(tapes: list[Tape | None], at_numbers: list[int]) -> Tapes:
 
 
 def _queues(delays: list[tuple[int, int]], first: int) -> tuple[list[int], int]:
-    """Where queues begin: a position, then the numbers of so many samples."""
+    """The places where queues start: a position, then the numbers of so many samples."""
     places = list(accumulate((1 + delay * size if delay else 0 for delay, size in delays),
                              initial=first))
     return places[:-1], places[-1]

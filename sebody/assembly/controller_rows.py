@@ -15,7 +15,7 @@ from sebody.model.parts import Element, LawParts
 
 
 class ActuatorRow(NamedTuple):
-    """How a law calls the kernel of an actuator."""
+    """The call of an actuator's kernel by a law."""
 
     address: int
     unknowns: list[int]

@@ -84,7 +84,7 @@ def filled(i: NDArray, j: NDArray, across: int) -> list[set[int]]:
 
 
 def entries(pattern: Pattern, row: NDArray, column: NDArray) -> NDArray:
-    """Where entries of the matrix are stored."""
+    """Places of entries in the stored matrix."""
     across = len(pattern.diagonal)
     columns = np.repeat(np.arange(across), np.diff(pattern.starts))
     block = np.searchsorted(columns * across + pattern.rows,

@@ -78,7 +78,7 @@ def evaluated_together(model: Mechanism) -> dict[str, Group]:
 
 
 def most_together(model: Mechanism) -> int:
-    """How many bodies the largest group of them has that are evaluated eight at a time."""
+    """The number of bodies in the largest group of them that is evaluated eight at a time."""
     groups = Counter(id(group) for group in evaluated_together(model).values())
     return max(groups.values(), default=0)
 

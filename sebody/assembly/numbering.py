@@ -25,7 +25,7 @@ def hidden_states(model: Mechanism, numbering: Numbering) -> dict[int, str]:
 
 
 def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Which coordinates belong to rotations, (total,) of bool."""
+    """Coordinates that belong to rotations, (total,) of bool."""
     flags = np.zeros(numbering.total, dtype=bool)
     for node in model.nodes.values():
         if node.rotation is not None and node.rotation in numbering.dof_blocks:
@@ -34,7 +34,7 @@ def rotational(model: Mechanism, numbering: Numbering) -> NDArray:
 
 
 def placed(model: Mechanism, numbering: Numbering) -> NDArray:
-    """Which coordinates belong to positions or rotations, (total,) of bool: no modes, multipliers.
+    """Coordinates that belong to positions or rotations, (total,) of bool: no modes, multipliers.
 
     Ways along paths and lengths of ropes count as positions.
     """

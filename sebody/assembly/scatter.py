@@ -30,7 +30,7 @@ def element_scatter(shapes: Iterable[Shape], unused: int) -> tuple[NDArray, NDAr
 
 
 def _zeros(shape: Shape) -> NDArray:
-    """Which entries of the matrices of a batch are zero in all states, (elements, width, width)."""
+    """Entries of the matrices of a batch that are zero in all states, (elements, width, width)."""
     inner = np.arange(shape.width) >= np.array(shape.full)[:, None]
     return inner[:, :, None] & inner[:, None, :] & ~np.eye(shape.width, dtype=bool)
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Source(NamedTuple):
-    """Where a scene comes from."""
+    """The source of a scene."""
 
     build: Callable
     summary: str        # first line of its file's description
@@ -117,7 +117,7 @@ def labelled_results(paths: Sequence[str]) -> "dict[str, Result]":
 
 
 def default_output(result: str, ending: str) -> Path:
-    """Where a command writes that is given no ``--output``: beside its result, of the same name."""
+    """The file of a command that is given no ``--output``: beside its result, of the same name."""
     path = Path(result)
     return path.parent / ((path.stem or "result") + ending)
 

@@ -1,4 +1,4 @@
-"""Which way functions are compiled: the fast one, or the plain one where it is asked for or needed.
+"""The way functions are compiled: the fast one, or the plain one where it is asked for or needed.
 
 The fast way uses Numba beyond its public interface, which a release of Numba may change. It is
 tried once with every version of Numba that sebody was not tested with.
@@ -54,7 +54,7 @@ def way() -> ModuleType:
 
 
 def _untested_fails() -> str:
-    """Why the fast way fails with a version of Numba it was not tested with; empty if it does not.
+    """The reason why the fast way fails with an untested version of Numba; empty if it does not.
 
     It is tried in a process of its own, which may crash, and the outcome is kept.
     """
@@ -75,7 +75,7 @@ def _untested_fails() -> str:
 
 
 def why_no_lanes() -> str:
-    """Why kernels cannot be compiled for eight numbers at a time; empty where they can.
+    """The reason why kernels cannot be compiled for eight numbers at a time; empty where they can.
 
     LLVM makes of eight numbers as many vectors as the processor needs for them.
     """

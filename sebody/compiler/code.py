@@ -32,7 +32,7 @@ class Code(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where code of something is kept: beside what is compiled of a module."""
+    """The place where code of something is kept: beside what is compiled of a module."""
 
     source: Path
     name: str           # of what it is the code of

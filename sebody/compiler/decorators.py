@@ -77,5 +77,5 @@ def kernel_code(kernel: Callable) -> Code:
 
 
 def is_compiled(path: Path) -> bool:
-    """Whether the kernel in a file was compiled; the file is not imported."""
+    """Tell if the kernel in a file was compiled; the file is not imported."""
     return way().is_kept(path, "kernel", kernel_hash(path))

@@ -1,4 +1,4 @@
-"""What a run needs and the cache lacks is compiled before it, side by side in several processes."""
+"""Compilation of what a run needs and the cache lacks, before it, side by side in processes."""
 
 import sys
 import time

@@ -27,7 +27,7 @@ SLOWER = 2.5        # compilation, compared with the fast way
 
 
 class _Made(NamedTuple):
-    """How a function was compiled."""
+    """The way a function was compiled."""
 
     options: dict
     made_from: str
@@ -69,14 +69,14 @@ def compile_for(function: Callable, kinds: tuple[types.Type, ...]) -> None:
 
 
 def is_compiled(function: Callable) -> bool:
-    """Whether a function was compiled, for whatever types of arguments."""
+    """Tell if a function was compiled, for whatever types of arguments."""
     code = function.py_func.__code__
     return is_kept(Path(code.co_filename), function.py_func.__qualname__,
                    _made[function.py_func].made_from)
 
 
 def is_kept(source: Path, name: str, made_from: str) -> bool:
-    """Whether a function of a file that need not be imported was compiled."""
+    """Tell if a function of a file that need not be imported was compiled."""
     return store.holds(source, _mark_name(source, name), _stamp(made_from))
 
 

@@ -40,7 +40,7 @@ def folder_hash(*folders: str) -> str:
 
 
 def in_folder(function: Callable, folder: str) -> bool:
-    """Whether a function is written in a folder of the package."""
+    """Tell if a function is written in a folder of the package."""
     return _is_in_folder(function.__code__.co_filename, folder)
 
 

@@ -34,7 +34,7 @@ def folders(source: Path) -> list[Path]:
 
 
 def _users_cache() -> Path:
-    """Where the system keeps what programs can make again."""
+    """The folder where the system keeps what programs can make again."""
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", ""), "sebody", "Cache")
     if sys.platform == "darwin":
@@ -57,7 +57,7 @@ def read(source: Path, name: str, made_from: str) -> Iterator[bytes]:
 
 
 def holds(source: Path, name: str, made_from: str) -> bool:
-    """Whether something is kept, by its first line alone: what follows may still be damaged."""
+    """Tell if something is kept, by its first line alone: what follows may still be damaged."""
     line = made_from.encode() + b"\n"
     return any(_beginning(folder / name, _CHECKSUM + len(line))[_CHECKSUM:] == line
                for folder in folders(source))
@@ -87,7 +87,7 @@ def say_not_kept(source: Path) -> None:
 
 
 def not_writable(source: Path) -> str:
-    """Why nothing about a module can be kept, and the remedy."""
+    """The reason why nothing about a module can be kept, and the remedy."""
     tried = " and ".join(map(str, folders(source)))
     if config.CACHE_DIR:
         return (f"{tried} cannot be written; set NUMBA_CACHE_DIR, now {config.CACHE_DIR}, to a "

@@ -48,7 +48,7 @@ _PASSING = {
 
 
 class Results(NamedTuple):
-    """How a controller is given the array of its results: as it is, or as one or two others.
+    """The form of the array of a controller's results: as it is, or as one or two others.
 
     Parts of it are made beside the function: arrays that checked functions pass on to others are
     counted, which takes longer than most laws.
@@ -58,7 +58,7 @@ class Results(NamedTuple):
     rows: int | None = None                         # as a table with so many rows
 
     def signature(self):
-        """Of the function."""
+        """The type of the compiled function."""
         given = ((_written, _written) if self.rates is not None else
                  (_table if self.rows is not None else _written,))
         return types.void(types.float64, _given, _written, *given, _given)
@@ -83,7 +83,7 @@ AS_IT_IS = Results()
 
 @dataclass(frozen=True)
 class Source:
-    """What is compiled of a function of a user; equal ones have the same machine code."""
+    """The code that is compiled of a user's function; equal ones have the same machine code."""
 
     made_from: Hashable                             # all that the machine code depends on
     function: Callable = field(compare=False)       # as Numba can compile it
@@ -262,7 +262,7 @@ def _without_record(signature, written: Callable, source: Source, *sizes):
 
 
 def _call_at(address: int, returned: types.Type) -> Callable:
-    """What calls the function at an address in compiled code."""
+    """The code that calls the function at an address."""
     @intrinsic
     def call(typingctx, *arguments):
         def codegen(context, builder, sig, args):
@@ -275,7 +275,7 @@ def _call_at(address: int, returned: types.Type) -> Callable:
 
 
 def _reason(error: Exception) -> str:
-    """What Numba says of a function it cannot compile, on one line."""
+    """Numba's words on a function that it cannot compile, on one line."""
     lines = re.sub(r"\x1b\[\d*m", "", str(error)).splitlines()
     said = [line.strip() for line in lines if line.strip() and not line.startswith("Failed in ")]
     place = next((line for line in said if line.startswith("File ")), "")

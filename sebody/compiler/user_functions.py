@@ -40,7 +40,7 @@ class UserFunction:
 
     @property
     def address(self) -> int:
-        """Of the machine code."""
+        """The address of the machine code."""
         return self.compiled.address
 
     @property

@@ -116,7 +116,7 @@ def _start(variables: Mapping[str, str]) -> subprocess.Popen:
 
 
 def _ask(process: subprocess.Popen, task: Task) -> str:
-    """What a process answers to a task; nothing if it has ended."""
+    """The answer of a process to a task; nothing if it has ended."""
     process.stdin.write(json.dumps((task.function, task.arguments)) + "\n")
     process.stdin.flush()
     return process.stdout.readline().strip()

@@ -1,1 +1,1 @@
-"""What derivation and runtime agree on: contents of all arrays, and names of kernels."""
+"""The agreement of derivation and runtime: contents of all arrays, names of kernels."""

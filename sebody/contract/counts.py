@@ -72,12 +72,12 @@ def scratch_size(work_rows: int, work_squares: int, unknowns: int, rotations: in
 
 
 def first_rotation(positions: int, planar: bool) -> int:
-    """Where rotations begin among a superelement's coordinates: positions, rotations, modes."""
+    """The first rotation among a superelement's coordinates: positions, rotations, modes."""
     return (2 if planar else 3) * positions
 
 
 def first_mode(positions: int, rotations: int, planar: bool) -> int:
-    """Where its internal modes begin."""
+    """The first of its internal modes."""
     return first_rotation(positions, planar) + (1 if planar else 3) * rotations
 
 

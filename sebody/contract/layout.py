@@ -51,7 +51,7 @@ class Part(NamedTuple):
     packed: bool = False
 
     def size(self, counts: Counts) -> int:
-        """How many numbers the part takes."""
+        """The count of numbers that the part takes."""
         sizes = [counts[s] if isinstance(s, str) else s for s in self.shape]
         if self.columns:
             return sizes[1] * whole_vectors(sizes[0])
@@ -79,7 +79,7 @@ class Row(NamedTuple):
         return sum(part.size(counts) for part in self.parts)
 
     def first(self, name: str) -> int:
-        """Where a part begins, if all parts before it are of fixed size."""
+        """The start of a part, if all parts before it are of fixed size."""
         return self.slices(_Fixed())[name].start
 
     def pack(self, counts: Counts, values: Mapping[str, ArrayLike]) -> NDArray:

@@ -1,4 +1,4 @@
-"""What is behind the index row of an element that lanes evaluate member by member.
+"""Numbers behind the index row of an element that lanes evaluate member by member.
 
 Places in the buffer of all numbers, the same for lanes and for the numbers of one member: first
 those of numbers that the element keeps or sets, which are put back, then all others that it reads.

@@ -1,4 +1,4 @@
-"""What frames and inertia options of superelements declare beside their formulas."""
+"""Traits of frames and inertia options of superelements, declared beside their formulas."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -36,7 +36,7 @@ class InertiaTraits(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """What the local coordinates of a body obey in its frame, beside zero mean displacements.
+    """The conditions on local coordinates of a body in its frame, beside zero mean displacements.
 
     A sum over the nodes vanishes: coefficients times the displacement or rotation of each. Or one
     over all coordinates does. In incremental frames it is zero to first order.

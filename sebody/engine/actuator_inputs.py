@@ -26,7 +26,7 @@ def input_at(pieces, row, kept, at, t):
 
 @compiled
 def follow(value, begun, lag, fastest, passed):
-    """What an actuator makes of a value, a time after it was set."""
+    """The output of an actuator for a value, a time after it was set."""
     gap = value - begun
     if fastest > 0.0 and abs(gap) > fastest * lag:
         ramp = (abs(gap) - fastest * lag) / fastest

@@ -20,7 +20,7 @@ INTERNAL = 5            # numbers of a column in System.internal
 
 @compiled
 def are_condensed(system, state):
-    """Whether a refreshed matrix is made of `State.condensed`."""
+    """Tell if a refreshed matrix is made of `State.condensed`."""
     control = state.control
     return (system.internal.shape[0] > 0 and control.refreshed > 1 and control.pivoted == 0
             and system.regularized[0] == 0)

@@ -122,7 +122,7 @@ def _hold(system, state, k):
 
 @compiled
 def _reading(system, state, k):
-    """What a sensor reads now, with bias and noise."""
+    """The present reading of a sensor, with bias and noise."""
     control, first = system.control, COUNTS + system.control.periods.size
     value, counts = measured(system, state, k), first + control.sensors.shape[0] + k
     count = state.memory[counts]
@@ -188,7 +188,7 @@ def _apply(system, state, k):
 
 @compiled
 def _held(system, state, end):
-    """What an output of a controller is now."""
+    """The present value of an output of a controller."""
     control = system.control
     number = control.ends[end, 0]
     return state.frames[control.inputs[number, 1] + VALUE if number >= 0 else control.ends[end, 1]]

@@ -66,7 +66,7 @@ GUARD = np.dtype([(name, np.float64) for name in (
 
 @compiled
 def grows(system, state, members, converged):
-    """Whether a converged step is to be rejected, because energy grows in it.
+    """Tell if a converged step is to be rejected, because energy grows in it.
 
     `members` as in `sebody.engine.iteration`.
     """

@@ -17,7 +17,7 @@ AT_ENDS = 0.015          # the same in steps in which it begins or opens: forces
 
 @compiled
 def contact_too_fast(system, state):
-    """Whether the step that has converged is too long for a contact; in lanes, of which members."""
+    """Tell if the step that has converged is too long for a contact; in lanes, of which members."""
     kept, old = state.frames, state.frames_old
     fast = 0.0 * state.clock.floor > 1.0
     for k in range(system.guarded.size):

@@ -167,7 +167,7 @@ def _conclude(system, state, active, verdict, reason):
 
 @compiled(forceinline=True)
 def guard_contacts(system, state, reason):
-    """Why a step fails: if it has converged, because it is too long for a contact, perhaps."""
+    """The reason why a step fails: one that has converged may be too long for a contact."""
     if system.guarded.size == 0:
         return reason
     return either((reason == NO_REASON) & contact_too_fast(system, state), CONTACT, reason)

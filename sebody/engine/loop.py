@@ -40,8 +40,10 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
     ahead = lead(scheme)
     steps = 0
     while True:
+        # rows lie on the grid of output, not at the ends of chosen steps
         if control.adaptive == 1:
             write_between(system, state, record, last_grid)
+        # a sample sets inputs, and what it sets may jump: the restart comes after it
         if control.restart != 0:
             code = np.int64(DONE)
             if 0.0 <= state.memory[NEXT] <= state.clock.time + NEAR * state.clock.step:
@@ -50,11 +52,13 @@ def advance(system, state, record, scheme, last_grid, chunk, dense):
                 code = call_restart(system.routines[1], system, state, ahead, dense)
             if code != DONE:
                 return code
+            # a row that is due at a jump has waited for the accelerations after it
             if control.due == 1:
                 write_record(state, record)
             continue
         if control.grid >= last_grid:
             return DONE
+        # the caller looks at signals and makes room for rows now and then
         if steps >= chunk:
             return CHUNK
         steps += 1

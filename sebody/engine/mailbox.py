@@ -35,7 +35,7 @@ TRIES = 4000            # looks at a word before other threads of the machine ge
 
 @dataclass(frozen=True, eq=False)
 class Shared(Arrays):
-    """What threads of one run have beside its state; empty where there is one thread.
+    """Memory that threads of one run have beside its state; empty where there is one thread.
 
     ==================  ============================================================================
     mail                (WORDS,) the mailbox

@@ -74,7 +74,7 @@ def correct(system, state, scheme, active, iteration, mixed):
 
 @compiled
 def strayed(system, state, scheme):
-    """Whether a step ends half a radian, or half the model's size, from where its rates led.
+    """Tell if a step ends half a radian, or half the model's size, from where its rates led.
 
     In lanes, of which members.
 
@@ -91,7 +91,7 @@ def strayed(system, state, scheme):
 
 @compiled
 def leaves_gap(system, state, norm, stabilized):
-    """Whether a residual is left that the corrections of a regularized matrix cannot remove.
+    """Tell if a residual is left that the corrections of a regularized matrix cannot remove.
 
     In lanes, of which members.
 

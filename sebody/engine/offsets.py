@@ -14,7 +14,7 @@ Group = TypeVar("Group", bound=Arrays)
 
 
 class Offsets:
-    """Where the arrays of floats of some groups lie in one buffer, by group, member and size.
+    """The places of arrays of floats of some groups in one buffer, by group, member and size.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How accelerations and multipliers will change in a step, from how they changed in the last ones.
+"""Prediction of accelerations and multipliers in a step, from their changes in the last ones.
 
 The number of corrections in Newton's iteration, and what it leaves with an old matrix, go with the
 error of the prediction. Predicted is that nothing changes; or that changes continue as a line or a
@@ -44,7 +44,7 @@ FIT = WITHOUT + 1      # its size
 
 @compiled
 def ring_place(steps, grid):
-    """Where changes of the step under way are in the ring; in lanes by those of the grid."""
+    """Places of the changes of the step under way in the ring; in lanes by those of the grid."""
     return steps + ROWS
 
 

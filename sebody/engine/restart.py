@@ -103,6 +103,7 @@ def restart(system, state, lead, dense):
         if verdict == FAILED:
             return _fail(system, state, NO_START)
         if verdict == DONE:
+            # the first step takes these accelerations for auxiliary ones as they are
             if lead == 0.0:
                 copy(state.a, state.aux)
                 state.clock.aux_step = state.clock.current_step
@@ -141,6 +142,7 @@ def set_masses(system, state):
     copy(state.loads, state.loads_old)
     set_loads_beside(system, state.frames, state.loads, clock.time, -clock.beside)
     jump_gravity(system, state)
+    # set to zero first: several motions may add up in one coordinate
     for k in range(system.prescribed.shape[0]):
         state.a[system.prescribed[k, 0]] = 0.0
     for k in range(system.prescribed.shape[0]):
@@ -156,6 +158,7 @@ def set_masses(system, state):
 def _evaluate(system, state, wanted):
     """Evaluate forces and the constraints' second rates; returns the kernels' status."""
     bodies, batches = system.first_joint[0], system.address.size
+    # element matrices of the steps stand where those of the restart are made
     if wanted != KEPT:
         keep_matrices_of_bodies(system, state)
     status = run_kernels(RESIDUAL if wanted == KEPT else TANGENT, 0, bodies, system, state)
@@ -204,12 +207,14 @@ def correct(system, state, going):
     rate = either(control.iteration > 0, norm / clock.last_norm, 0.0)
     clock.last_norm = either(going, norm, clock.last_norm)
     control.iteration = either(going, control.iteration + 1, control.iteration)
+    # a correction that hardly shrinks is rounding, if it is small; if not, the matrix is wrong
     stays, poor, old = rate > HARDLY, rate > POOR, (control.fresh < 1) & (rate > 0.0)
     none = (either(stays, ROUNDED, ACCURATE) * size
             + either(stays, STIFF, 1.0) * _rounding(system, state))
     settles = (rate <= POOR) & (max(rate, FASTEST) / (1.0 - rate) * norm <= none)
     verdict = either((norm <= none) | (old & settles), DONE, GO_ON)
     many = norm_after(norm, rate, REFACTORIZATION_COST)
+    # a new matrix is made where it is cheaper than the corrections that the old one would take
     renew = going & (verdict == GO_ON) & (poor | (old & (many > none)))
     control.wanted = either(renew, EVALUATED, control.wanted)
     ended = (verdict == GO_ON) & ((control.iteration >= MOST_CORRECTIONS) | (
@@ -281,6 +286,7 @@ def _take_rates(system, state, lead):
     copy(state.kept, state.now)
     copy(state.loads_old, state.loads)
     copy(state.a, state.aux)
+    # the correction is minus the change of accelerations in `SHORT` of a step
     for i in range(system.diagonal.size):
         if system.is_multiplier[i] == 0.0:
             state.aux[i] -= lead / SHORT * state.correction[i]

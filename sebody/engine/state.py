@@ -51,7 +51,7 @@ FINEST = 4096           # largest number of equal parts that a grid step is cut 
 
 @dataclass(frozen=True, eq=False)
 class State(Arrays):
-    """What the loop reads and writes: all that a restart needs, and scratch memory.
+    """The numbers that the loop reads and writes: all that a restart needs, and scratch memory.
 
     Of a model with N coordinates, the first n of them unknowns, with r rotation matrices, b
     superelements and p power ports. Rates are derivatives with respect to time; of rotations,
@@ -233,7 +233,7 @@ class State(Arrays):
 
     @property
     def recorded_parts(self) -> dict[str, slice]:
-        """Where the parts of `RECORD` are in `now` and in the rows of a record."""
+        """The places of the parts of `RECORD` in `now` and in the rows of a record."""
         return RECORD.slices({"ports": self.works.size, "coordinates": self.q.size,
                               "rotations": self.R.size // 9, "stored": self.frames.size})
 

@@ -189,6 +189,7 @@ def count_step(system, state, steps):
             orthogonalize(at(pointer_to(state.R), 9 * r))
     state.clock.acceleration_norm *= MEMORY
     watch_age(state)
+    # a step without a new matrix: the old one may be tried again soon
     control.back_off = either(control.fresh == 0, 0, control.back_off)
     control.steps += 1
 
@@ -206,8 +207,10 @@ def go_on_grid(state, record):
         control.restart = ASKED
     if control.split == 1:
         clock.time, control.inside = clock.end, 1
+        # a jump inside a step: the next one ends where this would have
         control.unit = np.int64(FINEST * (clock.time / clock.step - control.grid) + NEAR)
         return
+    # whole numbers: parts of steps meet the grid without rounding
     size = FINEST >> control.level
     control.unit, control.inside = (control.unit // size + 1) * size, 0
     if control.unit >= FINEST:             # back on the output grid
@@ -219,6 +222,7 @@ def go_on_grid(state, record):
         clock.time = clock.end
     if control.due == 1 and control.restart == 0:
         write_record(state, record)
+    # no longer than the guard of energies allows
     least = int(state.guard.halved)
     while control.level > least and control.unit % (FINEST >> (control.level - 1)) == 0:
         control.level -= 1                 # try the longer step again
@@ -280,6 +284,7 @@ def cut_step(state):
     if control.adaptive == 1:
         clock.chosen = 0.5 * clock.current_step
         control.held = 0
+        # errors before a contact say nothing of those in it
         if control.reason == CONTACT:
             forget_errors(clock)
         return clock.chosen > SHORTEST * clock.step

@@ -58,7 +58,7 @@ SHORTEST = 1e-9         # shortest step, relative to an output interval
 
 @compiled
 def accurate(system, state, scheme):
-    """Whether the error of a step is allowed; chooses the length of the next attempt."""
+    """Tell if the error of a step is allowed; choose the length of the next attempt."""
     clock, control = state.clock, state.control
     h = clock.current_step
     error = _local_error(system, state, scheme)

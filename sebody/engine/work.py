@@ -96,7 +96,7 @@ def _take_forces(system, state, factor):
 
 @compiled
 def forces_of_elements(system, state):
-    """How many of the forces of the ports are of elements."""
+    """The number of forces of the ports that are of elements."""
     return state.acting.size - system.prescribed.shape[0] - system.gravity_ports.size
 
 

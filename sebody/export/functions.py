@@ -88,7 +88,7 @@ def compile_one(name: str, processor: str) -> None:
 
 
 def place(name: str) -> Place:
-    """Where code of a function of the engine or of a kernel is kept."""
+    """The place where code of a function of the engine or of a kernel is kept."""
     if name in FUNCTIONS:
         function = FUNCTIONS[name][0].py_func
         return Place(Path(function.__code__.co_filename), name, function_hash(function))

@@ -13,7 +13,7 @@ ALIGNED = 64            # bytes: arrays begin at whole cache lines
 
 
 class _Span(NamedTuple):
-    """Where an array is in this process, and in the image."""
+    """The place of an array in this process, and in the image."""
 
     address: int
     size: int

@@ -140,7 +140,7 @@ def _numbers(model: Model, name: str) -> list[str]:
 
 def placed(asked: list[Asked], numbering: Numbering, system: System, state: State, image: Image,
            set_by: Settings) -> list[Input]:
-    """Where the values of inputs are."""
+    """The places of the values of inputs."""
     places, ports = [], list(numbering.memory.inputs)
     for one in asked:
         least, most = -np.inf, np.inf

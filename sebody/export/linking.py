@@ -21,7 +21,7 @@ RAISED = 6              # what the loop returns if compiled code raised, see run
 
 
 class Convention(NamedTuple):
-    """How C calls a function."""
+    """The C call of a function."""
 
     returns: str            # LLVM type
     arguments: tuple[str, ...]
@@ -137,7 +137,7 @@ def _wrappers(parts: Sequence[Part]) -> str:
 
 
 def _native(kind: str) -> str:
-    """How Numba passes a value: flags as bytes."""
+    """The type by which Numba passes a value: flags as bytes."""
     return "i8" if kind == "i1" else kind
 
 

@@ -63,7 +63,7 @@ def _of(names: Iterable[str]) -> list[str]:
 
 
 def _place(name: str) -> Place:
-    """Where an object file is kept; it depends on this folder, too."""
+    """The place where an object file is kept; it depends on this folder, too."""
     if name != ENGINE:
         own = place(name)
     else:

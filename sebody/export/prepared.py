@@ -41,7 +41,7 @@ ROUTINES = "refactorize", "restart", "sample"       # in the order of System.rou
 
 
 class Run(NamedTuple):
-    """How a model is run: the arguments of `Simulation`."""
+    """The run of an exported model: arguments of `Simulation`."""
 
     h: float
     tolerance: Tolerance | None = None

@@ -97,7 +97,7 @@ def quoted(text: str) -> str:
 
 
 def _number(fields: np.dtype, name: str) -> int:
-    """Which of the fields of a record one is."""
+    """The number of a field among those of a record."""
     return list(fields.fields or ()).index(name)
 
 
@@ -115,7 +115,7 @@ def _array(kind: str, name: str, values: Iterable[object]) -> str:
 
 
 def recorded_parts(model: Prepared) -> str:
-    """Where the parts of a row are, for the header of a library."""
+    """The places of the parts of a row, for the header of a library."""
     slices = model.run.state.recorded_parts
     meanings = {part.name: part.meaning for part in RECORD.parts}
     return "\n".join(f"     {part.start:5d} to {part.stop - 1:5d}  {name}: {meanings[name]}"

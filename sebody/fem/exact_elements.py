@@ -141,7 +141,7 @@ def _rule(line: Line, section: AnySection, kinks: NDArray, first: float, last: f
 
 
 def _turn(line: Line, first: float, last: float) -> float:
-    """How far the sections' axes turn between two places [rad]."""
+    """The turn of the sections' axes between two places [rad]."""
     near = INSIDE * (last - first)
     R = line.axes(np.linspace(first + near, last - near, SAMPLES))
     chords = np.linalg.norm(R[1:] - R[:-1], axis=(1, 2)) / np.sqrt(8)

@@ -1,4 +1,4 @@
-"""Where the ready cross-sections are stressed most, and by what.
+"""Fibres of the ready cross-sections that are stressed most, and by what.
 
 Shear stresses of shear forces are those of elementary theory, ``Q S / (I b)``; those of torques are
 those of S.P. Timoshenko and J.N. Goodier (Theory of Elasticity, 3rd ed., 1970, chapter 10).

@@ -219,7 +219,7 @@ class Stations:
 
     @property
     def kinks(self) -> NDArray:
-        """Where sections are not smooth along the beam."""
+        """Places along the beam where sections are not smooth."""
         return self.places
 
     def __call__(self, place: float) -> GeneralSection:

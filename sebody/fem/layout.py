@@ -1,4 +1,4 @@
-"""Which row of an FE model's matrices is which DOF of which node."""
+"""Rows of an FE model's matrices: the DOFs of its nodes."""
 
 from collections.abc import Iterable
 

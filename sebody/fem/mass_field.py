@@ -1,4 +1,4 @@
-"""How the mass of an FE model moves with its DOFs: points, their displacement and rotation."""
+"""Motion of the mass of an FE model with its DOFs: points, their displacement and rotation."""
 
 from dataclasses import dataclass
 

@@ -54,7 +54,7 @@ class SectionOfPart:
 
     @property
     def kinks(self) -> NDArray:
-        """Where sections are not smooth along the part."""
+        """Places along the part where sections are not smooth."""
         return (kinks_of(self.section) - self.first) / (self.last - self.first)
 
     def __call__(self, place: float) -> Section | StiffnessSection | GeneralSection:

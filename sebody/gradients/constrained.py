@@ -29,7 +29,7 @@ CUTOFF = 1e-9       # relative: forces of constraints that other constraints exc
 
 
 class Change(NamedTuple):
-    """How simplified models differ from the full one in a state."""
+    """The differences of simplified models from the full one in a state."""
 
     motion: NDArray     # (n, p) of the unknowns, multipliers included
     rates: NDArray      # (n, p)

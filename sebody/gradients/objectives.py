@@ -127,7 +127,7 @@ def values_of(outputs: Mapping[str, Output], run: Simulation, history: History
 
 
 class Looked(NamedTuple):
-    """Where an objective looks at its quantity, and the derivative of the one by the other."""
+    """The times at which an objective looks at its quantity, and its derivative by the quantity."""
 
     sensor: Sensor
     seeds: NDArray          # (recorded states, components, outputs)

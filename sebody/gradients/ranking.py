@@ -18,7 +18,7 @@ LARGE = 0.3         # of a quantity's largest change: beyond, estimates say that
 
 @dataclass(frozen=True, eq=False)
 class Contribution:
-    """How much some quantities change if a body is simplified.
+    """The change of some quantities if a body is simplified.
 
     Attributes
     ----------

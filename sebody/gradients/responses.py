@@ -53,7 +53,7 @@ def linearized(one: Differentiated, models: Sequence[Sequence[Motion]], names: S
 
 
 class Response:
-    """How a quantity responds to changes of a state.
+    """The response of a quantity to changes of a state.
 
     Motions of nodes and modes follow exactly; other quantities by differences along the changes,
     forces of elements by their exact matrices, with the forces that hold rigid bodies.

@@ -118,7 +118,7 @@ class Slopes:
         return _slope(values, SHORT * size)
 
     def _why(self, column: Column, rough: str) -> str:
-        """Why there is no derivative, as far as that is known, and what to do."""
+        """The reason why there is no derivative, as far as that is known, and what to do."""
         made = [name for name in column.bodies if self.model.bodies[name].reduced.modes]
         equal = {name: pair for name in made
                  if (pair := _equal_frequencies(self.model.bodies[name].reduced))}

@@ -101,7 +101,7 @@ def begin(system, state, products, columns, row, end, beside, h, numbers):
 
 @compiled
 def _is_old(columns, h):
-    """Whether the inverse is of another step length, or has cost more than a new one."""
+    """Tell if the inverse is of another step length, or has cost more than a new one."""
     counts = columns.counts
     return counts[FRESH] == 0 and (h != columns.length[0] or counts[SPENT] > columns.right.size)
 

@@ -1,4 +1,4 @@
-"""Which runs have exact gradients; all others are refused by name, with what to do instead."""
+"""Runs that have exact gradients; all others are refused by name, with what to do instead."""
 
 
 from sebody.basics.errors import InputError

@@ -24,7 +24,7 @@ _SHOWN = 5      # nodes left out that a note names
 
 
 class Round(NamedTuple):
-    """Where a cylinder is: a point and a direction of its axis, radius, and length or None."""
+    """The place of a cylinder: a point and a direction of its axis, radius, and length or None."""
 
     point: tuple[float, ...]
     axis: tuple[float, ...]

@@ -121,7 +121,7 @@ def _put_frames(given, count, index, stride, frames):
 
 @compiled(forceinline=True)
 def _are_finite(given, size):
-    """Whether numbers of eight bodies are finite; sums of each, which need not wait for others."""
+    """Tell if numbers of eight bodies are finite; sums of each, which need not wait for others."""
     nothing = 0.0
     for member in range(MEMBERS):
         own = 0.0
@@ -157,7 +157,7 @@ def _turn(turn, first, rotations, rotated, tangent, xs, vs, accelerations, Rs, T
 
 @compiled(forceinline=True)
 def _turn_back(turn, dimension, positions, rotated, tangent, width, gs, Js, frame):
-    """What was computed of eight bodies, in their own axes."""
+    """The results of eight bodies, in their own axes."""
     turn_back(turn, rotated, at(gs, dimension * positions))
     turn_frame_back(turn, frame)
     if tangent:

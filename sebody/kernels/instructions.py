@@ -1,4 +1,4 @@
-"""How products are written in vector instructions, and called without Numba's convention.
+"""Products in vector instructions, and calls of them without Numba's convention.
 
 A function that Numba compiles has a place for its result and one for an exception, both cleared
 where the caller begins, and its status is looked at after every call: with dozens of short calls
@@ -32,7 +32,7 @@ def in_lanes(write: Callable) -> Callable:
 
 
 def called(write: Callable, *kinds: types.Type) -> tuple:
-    """What an intrinsic returns whose instructions are a function of the module: see `call`.
+    """Type and instructions of an intrinsic that calls a function of the module: see `call`.
 
     `write` gets a builder and the arguments, whose types are `kinds`: pointers to floats, or to
     lanes, or to whole numbers, then whole numbers.

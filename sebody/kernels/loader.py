@@ -30,7 +30,7 @@ BY_HAND = {element_name("user_force"): "sebody.kernels.user_force",
 
 
 def user_directory() -> Path:
-    """Where kernels of other layouts go when the package's own folder cannot be written.
+    """The folder of kernels of other layouts where the package's own cannot be written.
 
     ``SEBODY_KERNELS``, or ``~/.sebody/kernels``.
     """
@@ -87,7 +87,7 @@ def load(name: str) -> ModuleType | None:
 
 
 def takes_one_member(name: str) -> bool:
-    """Whether lanes evaluate a kernel member by member: one that keeps numbers, or is by hand.
+    """Tell if lanes evaluate a kernel member by member: one that keeps numbers, or is by hand.
 
     Those that choose by their numbers all keep some.
     """
@@ -140,7 +140,7 @@ def products_kernel_name(kernel: str) -> str | None:
 
 
 def derive_command(*name: str) -> str:
-    """What makes a kernel: by its name, or a superelement's by layout, frame and inertia option."""
+    """A kernel's making: by its name, or a superelement's by layout, frame and inertia option."""
     return f"{DERIVE} {':'.join(name)}"
 
 

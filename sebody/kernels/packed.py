@@ -86,7 +86,7 @@ class Diagonal(NamedTuple):
 
 
 class Use(NamedTuple):
-    """What a strip multiplies."""
+    """A strip's operand: vector and matrix."""
 
     vector: int                 # the first one or the second
     place: int                  # of its sums in the stack of all products

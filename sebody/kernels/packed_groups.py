@@ -89,7 +89,7 @@ def _pieces(stack: NDArray) -> Iterator[tuple[int, int, slice]]:
 
 
 def _covered(rows: list[int], height: int, first: int = 0) -> list[int]:
-    """Where strips begin, as few as possible, that cover some rows, none before the first.
+    """The starts of strips, as few as possible, that cover some rows, none before the first.
 
     At whole vectors if these are not more: numbers are read by whole vectors afterwards, which
     must not wait for parts that are written last.

@@ -95,7 +95,7 @@ class Groups:
         return builder.gep(self.matrices, [place])
 
     def chosen(self, first: ir.Value, second: ir.Value) -> ir.Value:
-        """What belongs to the group's vector."""
+        """The first or the second value, by the vector of the group."""
         is_first = self.builder.icmp_signed("==", self.vector, WORD(0))
         return self.builder.select(is_first, first, second)
 
@@ -238,7 +238,7 @@ def columns_of(groups, strip):
 
 
 def _factors(groups, x):
-    """What the columns of the strips of a group are multiplied with."""
+    """Factors of the columns of the strips of a group."""
     builder = groups.builder
     return [load_broadcast(builder, x, builder.add(groups.first, WORD(k)))
             for k in range(groups.width)]

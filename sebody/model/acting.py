@@ -1,4 +1,4 @@
-"""When parts of a model act: until a time or a load, from a time, or both."""
+"""Times and loads at which parts of a model begin or cease to act."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ ACTING = tuple(Acting.__annotations__)
 
 
 class Switch(NamedTuple):
-    """When a part acts, see `Acting`."""
+    """The times and loads of a part, see `Acting`."""
 
     until: float = math.inf
     from_: float = 0.0
@@ -64,7 +64,7 @@ class Switch(NamedTuple):
         return self.from_ <= t < self.until
 
     def words(self) -> str:
-        """When, for messages."""
+        """The time, for messages."""
         said = {"until": self.until < math.inf, "from": self.from_ > 0.0}
         words = [f"{word} t = {t:.6g}" for (word, has), t in zip(
             said.items(), self[:2], strict=True) if has]

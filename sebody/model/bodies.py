@@ -268,7 +268,7 @@ def _fitting_order(points: NDArray, coordinates: NDArray, allowed: float) -> tup
 
 
 def _turned(points: NDArray, coordinates: NDArray) -> float:
-    """How far points are off others after the best shift and rotation."""
+    """The distance of points from others after the best shift and rotation."""
     a, b = points - points.mean(axis=0), coordinates - coordinates.mean(axis=0)
     left, _, right = np.linalg.svd(a.T @ b)
     turn = left @ right

@@ -60,7 +60,7 @@ def label_place(recovery: Recovery, label: str) -> int | None:
 
 
 def point_constants(point: BodyPoint) -> dict[str, ArrayLike]:
-    """Where a point is in the frame of its body, and its displacements by local coordinates."""
+    """The place of a point in the frame of its body, and its displacements by local coordinates."""
     recovery, held = _recovery(point), held_points(point.body)
     second = dict(zip(("Hx", "Hy", "Hz"), second_derivatives(point), strict=False))
     return {"Phi": shapes(point), "point": recovery.points[point.place] - point.body.alpha @ held,
@@ -93,7 +93,7 @@ def followers_of(body: Superelement) -> NDArray:
 
 
 def start_place(point: BodyPoint) -> NDArray:
-    """Where a point is in the undeformed body at the start, global axes."""
+    """The place of a point in the undeformed body at the start, global axes."""
     body = point.body
     first = body.reduced.position_nodes[0]
     placed: NDArray = body.nodes[first].point + (

@@ -1,4 +1,4 @@
-"""Which controllers a model has, of which kind, and in which order a sample calls them."""
+"""Controllers of a model, their kinds, and the order in which a sample calls them."""
 
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import alike

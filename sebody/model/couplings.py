@@ -171,7 +171,7 @@ class _Coordinate(NamedTuple):
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
-        """Where an element that has this coordinate acts."""
+        """The attachments of an element that has this coordinate."""
         if self.turns:
             return rotations(self.joint.node, self.joint.to)
         return self.joint.way.attachments

@@ -1,4 +1,4 @@
-"""Which inertia option a superelement has, and whether it stiffens: chosen here alone."""
+"""The inertia option of a superelement, and its stiffening: chosen here alone."""
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError

@@ -151,7 +151,7 @@ class Model(Mechanism):
 
 
 def _instead(name: str) -> str:
-    """What to call in place of a name that a model does not have."""
+    """A hint at what to call in place of a name that a model does not have."""
     if name in ELSEWHERE:
         return f": that is {ELSEWHERE[name]}"
     near = [] if name.startswith("_") else alike(name, [own for own in dir(Model)

@@ -96,7 +96,7 @@ class Node:
 
 
 class Attachment(NamedTuple):
-    """Where an element acts: one of the two DOF blocks of a node, which other nodes may share."""
+    """An element's place: one of the two DOF blocks of a node, which other nodes may share."""
 
     node: Node
     kind: str       # position or rotation
@@ -159,13 +159,13 @@ class Superelement:
 
     @property
     def firsts(self) -> list[int]:
-        """Where each of its attachments begins among its unknowns."""
+        """The first of the unknowns of each of its attachments."""
         sizes = [one.dof_block.start.size for one in self.attachments]
         return [0, *accumulate(sizes)][:len(sizes)]
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
-        """Where its reduced coordinates are, without internal modes."""
+        """The attachments of its reduced coordinates, without internal modes."""
         return (positions(*(self.nodes[i] for i in self.reduced.position_nodes))
                 + rotations(*(self.nodes[i] for i in self.reduced.rotation_nodes)))
 
@@ -178,7 +178,7 @@ class BodyPoint(NamedTuple):
 
 
 class PathPiece(NamedTuple):
-    """What a path has on one body, or a curve that is fixed on a node."""
+    """The part of a path on one body, or a curve that is fixed on a node."""
 
     carrier: Superelement | Node
     places: tuple[int, ...]     # of its knots in the recovery of the body; none of a node
@@ -188,7 +188,7 @@ class PathPiece(NamedTuple):
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
-        """Where the coordinates of the body are, without internal modes; or the node's."""
+        """The attachments of the body, without internal modes; or of the node."""
         if isinstance(self.carrier, Node):
             return positions(self.carrier) + rotations(self.carrier)
         return self.carrier.attachments
@@ -222,7 +222,7 @@ class Path:
 
 
 class OnPath(NamedTuple):
-    """What makes an element of a point on a path, or of forces: one for each piece.
+    """The place of an element of a point on a path, or of forces: one for each piece.
 
     Elements of a point share its equations, and those of a node that turns with the path theirs.
     In space one of these keeps a direction of the node across one of the path's section.
@@ -281,7 +281,7 @@ class Element:
 
     @property
     def firsts(self) -> list[int]:
-        """Where each of its attachments begins among its unknowns."""
+        """The first of the unknowns of each of its attachments."""
         sizes = [dof_block.start.size for dof_block in self.dof_blocks]
         places, modes = self.carried
         if places:      # internal modes come behind the nodes of the body
@@ -290,7 +290,7 @@ class Element:
 
     @property
     def carried(self) -> tuple[int, int]:
-        """How many of the first attachments are those of a body, and its internal modes."""
+        """The number of attachments of a body, which come first, and of modes of this body."""
         if self.path is not None:
             return len(self.path.here.attachments), self.path.here.modes
         if self.point is not None:
@@ -353,7 +353,7 @@ class Element:
 
 
 class Beam(NamedTuple):
-    """How a beam of superelements was built."""
+    """A beam as it was built of superelements."""
 
     name: str
     nodes: tuple[Node, ...]             # from end to end
@@ -401,7 +401,7 @@ class Way(NamedTuple):
 
     @property
     def attachments(self) -> tuple[Attachment, ...]:
-        """Where an element along the way acts."""
+        """The attachments of an element along the way."""
         return positions(self.carrier, self.other) + rotations(self.carrier)
 
     @property

@@ -49,7 +49,7 @@ def bending(piece: PathPiece, along: NDArray | None) -> int:
 
 
 def cautions(model: Mechanism, path: Path) -> list[str]:
-    """What there is to say of the bodies of a path that joints or forces move along."""
+    """Cautions on the bodies of a path that joints or forces move along."""
     field = gravity_at(model, 0.0)
     gravity = np.linalg.norm(field)
     found = []

@@ -17,7 +17,7 @@ _NO_CUBIC = "force, gap, tension_only, preload or a table"
 
 
 class Special(NamedTuple):
-    """What makes a spring one of tables."""
+    """A spring's options that make it one of tables."""
 
     force: Given | None
     damping: float | Given

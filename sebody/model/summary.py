@@ -14,7 +14,7 @@ from sebody.model.ties import untied
 
 
 class Unknowns(NamedTuple):
-    """How many unknowns a model has, and of what."""
+    """The number of unknowns of a model, and of what."""
 
     nodes: int
     modes: int

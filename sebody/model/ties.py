@@ -1,4 +1,4 @@
-"""Which bodies are not connected to the ground."""
+"""Bodies that are not connected to the ground."""
 
 import numpy as np
 from scipy.sparse import coo_array

@@ -165,7 +165,7 @@ def angular_velocity(model: Model, node: Node, name: str) -> Handle:
 
 
 def joint_position(model: Model, joint: Joint, name: str) -> Handle:
-    """Where a joint with the ground holds its node."""
+    """The place where a joint with the ground holds its node."""
     fixed, own = joint.to.position, joint.node.position
     if joint.kind == COUPLING:
         raise InputError(f"{name}: {joint.name!r} is a coupling, which holds no position: vary "

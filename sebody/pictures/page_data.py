@@ -111,7 +111,7 @@ def _sign(drawn: Scenery, measure: Measure) -> float:
 
 
 def _view(drawn: Scenery, places: NDArray, size: float) -> dict:
-    """Where the eye is at the start, and the grid."""
+    """The place of the eye at the start, and the grid."""
     radius = max(float(np.linalg.norm(places, axis=1).max()), 0.35)
     floor = np.asarray(drawn.floor, dtype=float)
     spacing = 10.0 ** np.floor(np.log10(radius * size)) / size

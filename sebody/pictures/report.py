@@ -125,7 +125,7 @@ def _picture(drawn: list[Panel]) -> str:
 
 
 def _unknowns(result: Result) -> str:
-    """How many unknowns there are of each part of the model, and why."""
+    """The unknowns of each part of the model, and the reason for them."""
     numbering, model = result.numbering, result.model
     free = [name for k, name in enumerate(numbering.names) if k < numbering.free]
     counts = Counter(_part(name) for name in free)

@@ -165,7 +165,7 @@ class Sum:
     __radd__, __rmul__ = __add__, __mul__
 
     def place(self) -> int:
-        """Where the number is on the tape, which it is entered into if it is not there."""
+        """The place of the number on the tape, which it is entered into if it is not there."""
         (product, weight), *others = [*self.products.items(), ((), 0.0)]
         if weight == 1.0 and len(product) == 1 and len(others) == 1:
             return product[0]

@@ -14,7 +14,7 @@ def sliding(of: Parts) -> dict[str, Joint]:
 
 
 def way(of: Numbers, name: str, part: str) -> Number:
-    """How far along its path a node is, from its beginning; or the rate of this."""
+    """The way of a node along its path, from the beginning of the path; or the rate of this."""
     own = _on(sliding(of)[name]).way
     assert own is not None
     return of.coordinates(part, own)[0]

@@ -1,4 +1,4 @@
-"""How many vibration modes are enough for a band of frequencies.
+"""The number of vibration modes that is enough for a band of frequencies.
 
 Of Craig and Bampton's bodies errors are known from static solutions, see
 `sebody.reduction.omission`; Rubin's have the free frequencies of the modes that they keep.

@@ -231,7 +231,7 @@ class ReducedBody:
 
     @property
     def lacks(self) -> dict[str, str]:
-        """Which of stresses, stiffening and exact inertia the body lacks, and why."""
+        """The reasons why the body lacks stresses, stiffening or exact inertia."""
         return lacks(self._stressed, self.invariants is not None, self.missing)
 
     @property

@@ -211,7 +211,7 @@ def check_live(stiffness: NDArray, mass: NDArray, names: list[str], beside: NDAr
 
 
 def dead_rows(matrices: Sequence[NDArray], names: list[str]) -> NDArray:
-    """Which rows are zero in all matrices, relative to the largest of their kind, (n,) of bool."""
+    """Rows that are zero in all matrices, relative to the largest of their kind, (n,) of bool."""
     return np.all([np.abs(matrix / np.outer(scale, scale)).max(axis=1, initial=0.0) <= ROUNDING
                    for matrix in matrices for scale in [unit_scale(matrix, names)]], axis=0)
 

@@ -189,7 +189,7 @@ class ClampedInterior:
             more *= 4
 
     def left_out(self, modes: int) -> int:
-        """How many modes beyond the lowest ones have the frequency of the last of these."""
+        """The number of modes beyond the lowest ones with the frequency of the last of these."""
         if not modes:
             return 0
         self.lowest(modes)

@@ -145,7 +145,7 @@ def _whole_mass(M: NDArray, R: NDArray, coupling: ArrayLike | None, rigid_mass: 
 
 
 def _order(keeps: tuple[str, ...], dimension: int, modes: int) -> NDArray:
-    """Where the coordinates of the body are in y: the base comes last of positions, of rotations.
+    """Places of the body's coordinates in y: the base comes last of positions, of rotations.
     """
     turns = 1 if dimension == 2 else 3
     count = dimension + turns

@@ -61,7 +61,7 @@ class Preload:
 
     @property
     def told(self) -> str:
-        """What it is, in words."""
+        """The preload, in words."""
         return ("under stress where it is undeformed: "
                 f"{counted(len(self.tension), 'line')} of up to {np.abs(self.tension).max():.6g}")
 
@@ -70,7 +70,7 @@ class Preload:
         return coordinates[self.nodes] + self.arms
 
     def rotated(self, rotation: NDArray) -> Preload:
-        """Of the body rotated about the FE origin by (D, D), in the old axes."""
+        """The preload of the body rotated about the FE origin by (D, D), in the old axes."""
         return replace(self, arms=self.arms @ rotation.T)
 
     def forces(self, coordinates: NDArray, keeps: tuple[str, ...], size: int) -> NDArray:

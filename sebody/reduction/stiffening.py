@@ -178,7 +178,7 @@ class GeometricStiffness:
                       amplitudes[self._count:], modes)
 
     def _that_matter(self, Ghat: NDArray) -> NDArray:
-        """Which resultants to keep, of geometric stiffnesses of motions of largest rotation 1."""
+        """Resultants to keep, of geometric stiffnesses of motions of largest rotation 1."""
         if len(Ghat) <= _MANY:
             return np.ones(len(Ghat), dtype=bool)
         relative = self._elastic.T @ Ghat @ self._elastic

@@ -1,4 +1,4 @@
-"""How well a run keeps what mechanics keeps: energy, momenta, constraints, each judged."""
+"""Judgements of a run by what mechanics keeps: energy, momenta, constraints."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""How well a run keeps its energy: the one judgement of summaries, reports and warnings."""
+"""The judgement of a run by its energy, for summaries, reports and warnings."""
 
 import numpy as np
 from numpy.typing import NDArray

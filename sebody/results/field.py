@@ -163,7 +163,7 @@ class Field(FieldStates):
 
     @property
     def stress_points(self) -> NDArray:
-        """Where stresses are computed, in the undeformed body, axes of the frame, (points, D)."""
+        """Places of stresses in the undeformed body, in axes of the frame, (points, D)."""
         places, axes = self.stresses().places(), self._recovery.axes
         places = places if axes is None else places @ axes.T
         return places + (self.points[0] - self._recovery.points[0])

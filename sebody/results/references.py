@@ -1,4 +1,4 @@
-"""Where displacements are measured from: the undeformed body that moves with a chosen node.
+"""Reference of displacements: the undeformed body that moves with a chosen node.
 
 A body that is held at a node is compared with the undeformed body that has the position and the
 rotation of this node, so the support does not move. On two supports that let it turn it is compared

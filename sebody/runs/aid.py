@@ -89,7 +89,7 @@ def _room(system: System, entries: int) -> Exchanges:
 
 
 class Run(Protocol):
-    """What the loop is given of a run."""
+    """The parts of a run that the loop is given."""
 
     system: System
     state: State

@@ -1,4 +1,4 @@
-"""Why a run stopped, and what to do about it."""
+"""Reasons why a run stopped, and what to do about them."""
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def explained(model: Model, system: System, state: State, numbering: Numbering) 
 
 
 def _beyond(model: Model, numbering: Numbering, state: State) -> str:
-    """Which point is at the end of its path, and where: the nearest to an end of all."""
+    """The point that is at the end of its path, and the end: the nearest of all."""
     found = []
     for joint in model.joints:
         if joint.kind != PATH:

@@ -115,7 +115,7 @@ def fold(kind, number, norm, t, table, columns, kept, before, largest, facts):
 
 @compiled
 def _powers(number, kept, largest, last, value, step):
-    """Of SOFT_MAXIMUM: the integral of the powers, and the largest absolute value."""
+    """Numbers kept for SOFT_MAXIMUM: the integral of the powers, and the largest absolute value."""
     if abs(value) > largest or value != value:
         kept *= (largest / abs(value)) ** number
         largest = abs(value)

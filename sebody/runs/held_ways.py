@@ -145,7 +145,7 @@ class Ways:
         return found
 
     def reason(self) -> str:
-        """Why they come to rest nowhere, in words, from the last state that was reached."""
+        """The reason why they come to rest nowhere, by the last state that was reached."""
         k = int(np.argmax(np.abs(self._pushed)))
         joint, on, s = self._joints[k], _path(self._joints[k]), self.run.state.q[self._at[k]]
         end, length = (on.path.length if self._pushed[k] > 0.0 else 0.0), on.path.length

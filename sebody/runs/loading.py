@@ -279,7 +279,7 @@ class Loading:
         self.step = 1.0 / self.steps
 
     def _reason(self, target: float) -> str:
-        """Why nothing is found from the last state on."""
+        """The reason why nothing is found from the last state on."""
         run, spin = self.run, self.steady.times(np.sqrt(target))
         said = user_faults.fault(run.model, -np.inf) or self.tensions.reason(run)
         if said:
@@ -311,7 +311,7 @@ class Loading:
         return f", where {self._work.vain} iterations found none" * bool(self._work.vain)
 
     def _softest_now(self, tangent: csc_matrix) -> str:
-        """Where the softest motion is, if it has lost its stiffness since the loads began."""
+        """The place of the softest motion, if it has lost its stiffness since the loads began."""
         state, now = self.run.state, self.run.state.now.copy()
         soft = Stiffness(self.run, tangent, self._unit).softest()
         state.now[:] = self.run.rows.stretches[0][0]

@@ -111,7 +111,7 @@ def _ports(part: Result, numbering: Numbering) -> NDArray:
 
 def _force_places(model: Mechanism, numbering: Numbering, total: int
                   ) -> dict[tuple[str, str, int], tuple[int, int]]:
-    """Where the forces of each body and element begin, and how many there are."""
+    """The start of the forces of each body and element, and the number of forces."""
     at = numbering.forces_at
     firsts = sorted(at.values())
     sizes = dict(zip(firsts, np.diff([*firsts, total]).tolist(), strict=True))

@@ -65,7 +65,7 @@ class Output:
             inputs.number(self.time, f"output of {self.quantity}: time", least=0)
 
     def size(self, shape: tuple[int, ...]) -> int:
-        """How many values there are of a quantity of some shape in a state."""
+        """The number of values of a quantity of some shape in a state."""
         return 1 if self.norm else prod(shape)
 
     def unit(self, units: Units) -> str:
@@ -222,7 +222,7 @@ def _asked(output: Output) -> tuple[int, float, bool]:
 
 
 class Form(NamedTuple):
-    """How a quantity is read."""
+    """Shape and source of a quantity that runs read."""
 
     shape: tuple[int, ...]      # in a state
     kinematic: bool             # from recorded states alone
@@ -231,7 +231,7 @@ class Form(NamedTuple):
 
 
 def forms(simulation: Simulation, outputs: Mapping[str, Output]) -> dict[str, Form]:
-    """How each quantity is read.
+    """The form of each quantity.
 
     Raises
     ------

@@ -30,7 +30,7 @@ MOST_STRETCHES = 50     # corners of loads between which steps are planned by th
 
 
 class Plan(NamedTuple):
-    """How the steps of a run within a tolerance are chosen.
+    """A choice of steps within a tolerance.
 
     By default errors choose them one by one.
     """

@@ -14,7 +14,7 @@ BUFFERED = 1024         # rows of the buffer
 
 
 class RecordedRows:
-    """Where the loop writes accepted states.
+    """The rows where the loop writes accepted states.
 
     Parameters
     ----------

@@ -287,5 +287,5 @@ def massless_axes(matrix: csc_matrix, system: System) -> NDArray:
 
 
 def multiplying(system: System) -> NDArray:
-    """Which unknowns are multipliers, (n,) of bool."""
+    """Unknowns that are multipliers, (n,) of bool."""
     return system.is_multiplier[:system.diagonal.size] > 0.0

@@ -109,7 +109,7 @@ def resume(model: Model, path: str | Path, threads: int = 1) -> Simulation | Pha
 
 
 def _prefix(phased: bool, number: int) -> str:
-    """What the names of the members of a phase begin with."""
+    """The prefix of the names of the members of a phase."""
     return f"{number}/" if phased else ""
 
 

@@ -1,4 +1,4 @@
-"""Where a loaded structure comes to rest: by Newton's iteration, or by a motion to there.
+"""Search for the rest of a loaded structure: by Newton's iteration, or by a motion to there.
 
 A cable that is slack, a chain or any other mechanism has no stiffness until it has moved to where
 its loads stretch it. It gets there in steps, each of which is the equilibrium of the loads and of

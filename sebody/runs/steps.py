@@ -1,4 +1,4 @@
-"""How many steps a run may have, and which is the last."""
+"""The number of steps of a run, and the last of them."""
 
 from sebody.basics import inputs
 from sebody.basics.errors import InputError
@@ -21,7 +21,7 @@ def check_steps(t_end: float, h: float) -> None:
 
 
 def whole_steps(t_end: float, h: float) -> int:
-    """How many steps a time is a multiple of.
+    """The number of steps that a time is a multiple of.
 
     Raises
     ------

@@ -42,7 +42,7 @@ def have_same_order(model: Mechanism, numbering: Numbering, given: Recording) ->
 
 
 def _order(side: Side) -> tuple[Any, ...]:
-    """What the numbers of a state are of, in their order."""
+    """The owners of the numbers of a state, in their order."""
     numbering = side.numbering
     return (numbering.names, record_counts(numbering), list(side.model.bodies),
             [block.name for block in numbering.rotations], _places(side))

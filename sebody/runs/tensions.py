@@ -48,7 +48,7 @@ class Tensions(NamedTuple):
         return f"is unstable: {said}" if load.folding > 1.0 and _unstable(run) else ""
 
     def reason(self, run: Simulation) -> str:
-        """Why no equilibrium is found from a state on, empty if it is not for a tension."""
+        """The reason why no equilibrium is found, where it is a tension; empty otherwise."""
         worst = self._worst(run)
         return self._said(*worst) if worst and worst[1].folding > NEAR else ""
 

@@ -33,7 +33,7 @@ class Excess(NamedTuple):
 
 
 class Threshold(NamedTuple):
-    """What lets go, and by how much a quantity is above its limit, relative to the limit."""
+    """The part that lets go, and the excess of a quantity over its limit, relative to the limit."""
 
     name: str
     excess: Excess

@@ -1,4 +1,4 @@
-"""Which parts of a model turn about a line, and which stand.
+"""Parts of a model that turn about a line, and parts that stand.
 
 Rotations, and positions off the line, are tied to each other where they belong to one body or one
 rigid link, share a block (welds, joints) or where an element resists that one of them turns alone:

@@ -101,7 +101,7 @@ class _Search:
         return float(self.at(speed).omega[k] - order * speed)
 
     def crossing(self, k: int, order: float, between: tuple[float, float]) -> tuple:
-        """Where this gap closes: speed, order, eigenvalue, whirl."""
+        """The place where this gap closes: speed, order, eigenvalue, whirl."""
         speed = brentq(lambda at: self.gap(k, order, at), *between, xtol=EXACT * between[1])
         modes = self.at(speed)
         names = whirls(self._rotations.model, modes, self._rotations.unit)

@@ -1,4 +1,4 @@
-"""How much energy a run with fixed steps will gain: known before it, from small vibrations.
+"""The energy that a run with fixed steps will gain: known before it, from small vibrations.
 
 Generalized-alpha with little numerical damping is nearly the trapezoidal rule. In a conservative
 system this keeps, up to the fourth order of the step h,
@@ -52,7 +52,7 @@ class EnergyGain(NamedTuple):
 
 
 def energy_gain(model: Model, until: float) -> EnergyGain:
-    """How much energy fixed steps may add to the vibrations that a blow and a spin leave behind.
+    """The energy that fixed steps may add to the vibrations that a blow and a spin leave behind.
 
     Loads from t = 0 to `until` act on the model where it stands and, with the forces of its
     initial velocities, excite small vibrations about it. The gain is an estimate from above of how

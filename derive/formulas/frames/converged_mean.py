@@ -60,7 +60,7 @@ def converged_mean(q: Quantities) -> Frame:
 
 
 def condition(q: Quantities) -> Condition:
-    """What the elastic rotations obey."""
+    """The condition on the elastic rotations."""
     return Condition(q.psi, -q.alpha_r.symbols[0] * sp.eye(3), (q.alpha_r,))
 
 

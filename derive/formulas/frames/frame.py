@@ -21,7 +21,7 @@ from sebody.derive.symbolic.variation import check_same
 
 
 class Condition(NamedTuple):
-    """What the local coordinates obey in a frame: ``sum_j weight_j of_j = 0``.
+    """A condition on the local coordinates in a frame: ``sum_j weight_j of_j = 0``.
 
     Beside it the weighted displacements add up to zero in every frame, (14).
     """

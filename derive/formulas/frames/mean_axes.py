@@ -94,7 +94,7 @@ def mean_axes(q: Quantities) -> Frame:
 
 
 def _parts(q: Quantities) -> tuple[Condition, Condition, Condition]:
-    """What displacements, rotations and modes add to the mean rotation."""
+    """The parts of displacements, rotations and modes in the mean rotation."""
     axes = AXES[:2] if q.space.planar else AXES
     turns = AXES[2:] if q.space.planar else AXES
     columns = {"position": [(axis, i3 + c) for c, axis in enumerate(axes)],
@@ -116,7 +116,7 @@ def _column(q: Quantities, home: str, coordinate: Whole, axis: str = "") -> Quan
 
 
 def condition(q: Quantities) -> Condition:
-    """What all local coordinates obey."""
+    """The condition on all local coordinates."""
     of_one = _column(q, "coordinate", i)
     return Condition(q.space.quantity("y_all", "scalar", "coordinate", arrays.y), of_one.symbols,
                      (of_one,))

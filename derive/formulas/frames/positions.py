@@ -66,7 +66,7 @@ def positions(q: Quantities) -> Frame:
 
 
 def condition(q: Quantities) -> Condition:
-    """What the displacements obey."""
+    """The condition on the displacements."""
     return Condition(q.u, q.fit.symbols[0] * skew(q.X.symbols), (q.fit, q.X))
 
 

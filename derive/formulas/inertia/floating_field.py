@@ -46,7 +46,7 @@ class Sums(NamedTuple):
 
 
 class Row(NamedTuple):
-    """What belongs to one coordinate z_i of the constants and their contractions."""
+    """The constants of one coordinate z_i, and their contractions."""
 
     S1: sp.Matrix           # first moment of its shape
     g: sp.Matrix            # g_k,i

@@ -82,7 +82,7 @@ def _borders(f: FloatingQuantities) -> tuple[Stage, ...]:
 
 
 def held(f: FloatingQuantities) -> tuple[Step, ...]:
-    """Of a column: local forces by changed local coordinates."""
+    """Steps of a column: local forces by changed local coordinates."""
     return (to_free(arrays.y.d, at.z.d), *slaved.varied(),
             _times(f, BLOCK_TIMES, PLACE, at.z.d, N))
 

@@ -42,7 +42,7 @@ class Local(NamedTuple):
 
 
 class Inertia(NamedTuple):
-    """What an inertia option contributes to a kernel."""
+    """The parts of an inertia option in a kernel."""
 
     velocity: tuple[Stage, ...]     # w_j of (36) or (52), and what it needs
     acceleration: tuple[Stage, ...]  # ydd of (46) or (58)

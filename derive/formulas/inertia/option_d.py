@@ -126,7 +126,7 @@ class _Carried:
                      for row, out in rows)
 
     def coefficients(self) -> tuple[Values, ...]:
-        """Of exp and T, in space."""
+        """Values of the coefficients of exp and T, in space."""
         q = self.q
         if q.space.planar:
             return ()

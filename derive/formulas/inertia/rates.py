@@ -1,4 +1,4 @@
-"""What options share whose energy is in rates of deformation and the motion of the frame."""
+"""Common parts of options whose energy is in rates of deformation and motion of the frame."""
 
 from typing import NamedTuple
 
@@ -89,7 +89,7 @@ def _accelerations(q: Quantities, frame: Frame, rules: Rules, stages: list[Stage
 
 
 def second_derivatives(q: Quantities) -> tuple[Values, ...]:
-    """Of the coefficients of ``T^-1``, in space: second rates have their derivatives."""
+    """Values of the coefficients of ``T^-1``, in space: second rates have their derivatives."""
     if q.space.planar:
         return ()
     return (Values("second derivative of the coefficients of T^-1", (q.e2,),

@@ -19,7 +19,7 @@ from sebody.derive.symbolic.variation import check_same
 
 
 class Resultants(NamedTuple):
-    """What the resultants contribute to a kernel."""
+    """The parts of the resultants in a kernel."""
 
     forces: tuple[Step, ...]        # with Sbar y
     energy: sp.Expr                 # beyond y^T Sbar y / 2

@@ -22,7 +22,7 @@ from sebody.derive.symbolic.variation import Rules, along, check_same, different
 
 
 class Deformation(NamedTuple):
-    """What the local coordinates and their rates have of the rigid modes."""
+    """Moments of mass by the local coordinates and their rates."""
 
     first: sp.Matrix        # m c + S1 y, first moment of mass about the origin of the frame
     first_d: sp.Matrix      # S1 ydot
@@ -69,7 +69,7 @@ def kinetic_energy(m: Motion, y: Deformation, J: sp.Matrix, w: sp.Matrix,
 
 
 def momentum(m: Motion, y: Deformation) -> sp.Matrix:
-    """Of the body, in axes of the frame."""
+    """Momentum of the body, in axes of the frame."""
     return m.mass * m.velocity + cross(m.spin, y.first) + y.first_d
 
 

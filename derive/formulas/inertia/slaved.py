@@ -34,7 +34,7 @@ def slaving() -> tuple[Call, ...]:
 
 
 def accelerated() -> Call:
-    """What the differentials of the accelerations need beyond that."""
+    """The further step for differentials of the accelerations."""
     return call("Q_b zdd, all b", PACKED_TIMES, at.followers, at.zdd, at.Za, slaved * hn)
 
 

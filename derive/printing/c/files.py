@@ -63,7 +63,7 @@ def _declared(bodies: Iterable[tuple[Statement, ...]]) -> Iterator[str]:
 
 
 def _type(use: Use, operand: Operand) -> str:
-    """Of an operand of a call."""
+    """The C type of an operand of a call."""
     if use.of_array:
         return pointer(array_of(operand))
     return WHOLE if use is Use.WHOLE else REAL

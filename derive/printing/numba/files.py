@@ -38,7 +38,7 @@ SOURCES = 'SOURCES = "{}"  # hash of sebody/contract and sebody/kernels that thi
 
 
 class Head(NamedTuple):
-    """What a file says of its kernel."""
+    """The words and facts of a file on its kernel."""
 
     title: str
     summary: tuple[str, ...]            # lines

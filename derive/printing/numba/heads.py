@@ -1,4 +1,4 @@
-"""What files of kernels say of themselves, by what the kernels are of."""
+"""Docstrings of files of kernels, by what the kernels are of."""
 
 from collections.abc import Iterable
 
@@ -30,7 +30,7 @@ OF_LOADS = (
 
 
 def superelement_head(given: Superelement, kernel: Kernel) -> Head:
-    """Of a superelement: the frame and the inertia option are in the names."""
+    """The head of a superelement: the frame and the inertia option are in the names."""
     layout, (frame, inertia) = given.layout, given.options
     damped = None if inertia.traits.rates else layout.damped
     rows = ("SUPERELEMENT_CONSTANTS", *["DAMPING_CONSTANTS"] * layout.damped)
@@ -59,7 +59,7 @@ def superelement_head(given: Superelement, kernel: Kernel) -> Head:
 
 
 def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
-    """Of a load on a body: any layout, one frame."""
+    """The head of a load on a body: any layout, one frame."""
     planar = given.layout.planar
     return Head(
         "Element kernel: load on a body that turns with its frame",
@@ -74,7 +74,7 @@ def body_load_head(given: BodyLoad, kernel: Kernel) -> Head:
 
 
 def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
-    """Of a contact of a point inside a body: any layout and surface, one frame."""
+    """The head of a contact of a point inside a body: any layout and surface, one frame."""
     planar, law = given.layout.planar, given.steps.law
     parts = (*given.declared, *(_part(constant) for constant in law.constants))
     return Head(
@@ -91,7 +91,7 @@ def body_contact_head(given: BodyContact, kernel: Kernel) -> Head:
 
 
 def path_head(given: BodyPath, kernel: Kernel) -> Head:
-    """Of a point on a path of a body, or a node that turns with it: any layout, one frame."""
+    """The head of a point on a path of a body, or of a node that turns with it."""
     planar, turns = given.layout.planar, given.turns
     alone = turns or given.across
     size = 1 if alone else 2 if planar else 3
@@ -119,7 +119,7 @@ def path_head(given: BodyPath, kernel: Kernel) -> Head:
 
 
 def path_load_head(given: BodyPath, kernel: Kernel) -> Head:
-    """Of forces that move along a path: any layout, one frame."""
+    """The head of forces that move along a path: any layout, one frame."""
     return Head(
         "Element kernel: forces that move along a path of a body",
         (f"Any number of positions and rotations of {SPACES[given.layout.planar]}; any number of "
@@ -141,7 +141,7 @@ def _nodes(layout: Layout) -> str:
 
 
 def motion_head(given: FrameMotion, kernel: Kernel) -> Head:
-    """Of the motion of bodies: any layout, one frame."""
+    """The head of the motion of bodies: any layout, one frame."""
     planar, own = given.layout.planar, given.option.traits.constants
     table_of_own = f" + {table(own)}" if own else ""
     return Head(
@@ -155,7 +155,7 @@ def motion_head(given: FrameMotion, kernel: Kernel) -> Head:
 
 
 def element_head(given: Element, kernel: Kernel) -> Head:
-    """Of a joint, rigid body or force."""
+    """The head of a joint, rigid body or force."""
     multipliers, power = len(given.multipliers), given.power is not None
     known, planar = kernel.known, given.space.planar
     driven = multipliers > 0 and power and _reads_amplitude(given)
@@ -185,7 +185,7 @@ def _reads_amplitude(given: Element) -> bool:
 
 
 def products_head(own: Head, kernel: Kernel) -> Head:
-    """Of products with the derivatives of the forces of a kernel with a head of its own."""
+    """The head of products with derivatives of the forces of a kernel that has its own head."""
     return own._replace(
         title="Products with derivatives of forces", summary=(f"{own.title}.", *own.summary),
         facts=(*own.facts, f"KEPT = {kernel.kept}      # numbers kept between two calls"))

@@ -79,7 +79,7 @@ def _function(key: tuple[str, bool], condition: Condition) -> str:
 
 
 def _alone(quantity: Quantity) -> bool:
-    """Whether a row of one number is given."""
+    """Tell if a row of one number is given."""
     return quantity.kind != "scalar" and len(quantity.kept) == 1
 
 

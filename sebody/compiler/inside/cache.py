@@ -72,7 +72,7 @@ class FunctionCache(NullCache):
         return _file_name(self._source, self._function, self.kind)
 
     def holds_any(self) -> bool:
-        """Whether the function was compiled, for whatever signature."""
+        """Tell if the function was compiled, for whatever signature."""
         return store.holds(self._source, self._name, self._made_from)
 
     def load_overload(self, sig, target_context) -> CompileResult | None:
@@ -102,7 +102,7 @@ class FunctionCache(NullCache):
 
     @staticmethod
     def _reduced(data: CompileResult) -> tuple:
-        """What `_rebuilt` takes; LLVM code, which callers take in, is kept by itself."""
+        """The arguments of `_rebuilt`; LLVM code, which callers take in, is kept by itself."""
         library, names = data.library, data.fndesc
         functions = tuple(name for name in (
             names.llvm_func_name, names.llvm_cpython_wrapper_name,
@@ -124,7 +124,7 @@ class FunctionCache(NullCache):
 
 
 def is_kept(source: Path, function: str, made_from: str, kind: str = "") -> bool:
-    """Whether a function of a file that need not be imported was compiled."""
+    """Tell if a function of a file that need not be imported was compiled."""
     return store.holds(source, _file_name(source, function, kind), _stamp(made_from))
 
 

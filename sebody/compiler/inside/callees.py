@@ -60,7 +60,7 @@ class _Library(JITCodeLibrary):
         self._finalized = True
 
     def serialize_using_object_code(self) -> tuple[str, bytes]:
-        """What is kept of the code."""
+        """The code as it is kept."""
         self._ensure_finalized()
         return self.name, self._final_module.as_bitcode()
 
@@ -164,7 +164,7 @@ class Function(CPUDispatcher):
 
     @cached_property        # most runs compile nothing
     def callee(self) -> Callee:
-        """What compiled functions take in."""
+        """The code that compiled functions take in."""
         return Callee(self.py_func, self.targetoptions, self._made_from)
 
     def get_call_template(self, args, kws):

@@ -51,7 +51,7 @@ def is_compiled(function: Function | Callee) -> bool:
 
 
 def part_of_callers(function: Function) -> Callee:
-    """What is compiled of a function for its callers."""
+    """The code that is compiled of a function for its callers."""
     return function.callee
 
 

@@ -30,5 +30,5 @@ def kernel_in_lanes(function: Callable, signature, options: dict, made_from: str
 
 
 def is_kept_in_lanes(path: Path, made_from: str, kind: str) -> bool:
-    """Whether the kernel of a file was compiled for lanes; the file is not imported."""
+    """Tell if the kernel of a file was compiled for lanes; the file is not imported."""
     return is_kept(path, "kernel", made_from, kind)

@@ -56,7 +56,7 @@ class Mask(types.Type):
 
 
 def takes_lanes(kinds: tuple[types.Type, ...]) -> bool:
-    """Whether a function with arguments of some types is given lanes, pointers to them or masks."""
+    """Tell if a function with arguments of some types is given lanes, pointers to them or masks."""
     return any(isinstance(getattr(kind, "dtype", kind), (Lanes, Mask)) for kind in kinds)
 
 
@@ -189,7 +189,7 @@ def where(typingctx, chosen, x, y):
 
 @intrinsic
 def every(typingctx, chosen):
-    """Whether a mask is true in all lanes."""
+    """Tell if a mask is true in all lanes."""
     def codegen(context, builder, sig, args):
         return builder.icmp_unsigned("==", builder.bitcast(args[0], _ALL), _ALL(2**MEMBERS - 1))
     return types.boolean(mask), codegen
@@ -197,7 +197,7 @@ def every(typingctx, chosen):
 
 @intrinsic
 def some(typingctx, chosen):
-    """Whether a mask is true in a lane."""
+    """Tell if a mask is true in a lane."""
     def codegen(context, builder, sig, args):
         return builder.icmp_unsigned("!=", builder.bitcast(args[0], _ALL), _ALL(0))
     return types.boolean(mask), codegen
@@ -205,7 +205,7 @@ def some(typingctx, chosen):
 
 @intrinsic
 def chosen_in(typingctx, chosen, member):
-    """Whether a mask is true in one lane."""
+    """Tell if a mask is true in one lane."""
     def codegen(context, builder, sig, args):
         return builder.extract_element(args[0], args[1])
     return types.boolean(mask, types.int64), codegen

@@ -6,7 +6,7 @@ _kinds = [types.Number, types.Boolean, types.RawPointer, types.Array, types.Base
 
 
 def plain(arguments: tuple[types.Type, ...]) -> bool:
-    """Whether operations on some types are remembered."""
+    """Tell if operations on some types are remembered."""
     kinds = tuple(_kinds)
     return all(isinstance(kind, kinds) for kind in arguments)
 

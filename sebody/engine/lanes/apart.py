@@ -59,7 +59,7 @@ def give(apart, places, member):
 
 @compiled
 def jump_is_ahead(system, state):
-    """Whether loads jump in the next step."""
+    """Tell if loads jump in the next step."""
     clock, control, corners = state.clock, state.control, system.corners
     near = NEAR * clock.current_step
     while control.corner < corners.size and (system.jumps[control.corner] == 0 or (

@@ -36,7 +36,7 @@ Group = TypeVar("Group", bound=Arrays)
 
 @dataclass(frozen=True, eq=False)
 class Scratch(Arrays):
-    """What an iteration keeps of members that need not be evaluated again.
+    """Memory of an iteration for members that need not be evaluated again.
 
     ==================  ============================================================================
     frames              frames before an evaluation

@@ -27,7 +27,7 @@ WANTED, EVALUATED, MADE = range(3)      # of `Together.asked`
 
 @dataclass(frozen=True, eq=False)
 class Together(Arrays):
-    """What matrices are made in: members that want none keep theirs.
+    """Memory in which matrices are made: members that want none keep theirs.
 
     ==================  ============================================================================
     routine             (1,) address of `refactorize`; zero where matrices are made one by one
@@ -128,7 +128,7 @@ def condensed_matrix(system, state, k, evaluated):
 
 @in_lanes_of(elimination.invert_factors)
 def invert_factors(D, factors, unknowns, scale):
-    """Of regularized matrices, which are never made together."""
+    """`elimination.invert_factors` in lanes, where regularized matrices are never made."""
     return False
 
 

@@ -1,4 +1,4 @@
-"""How much of a model some quantities need: see the page beside this file."""
+"""Advice on how much of a model some quantities need: see the page beside this file."""
 
 from collections.abc import Callable, Iterable
 

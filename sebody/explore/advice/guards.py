@@ -34,7 +34,7 @@ REAL = 1e-3             # of the motion, that real systems are disturbed by
 
 def off_the_grid(run: Result, values: Values, h: float, reference: Reference,
                  grid: float) -> tuple[float, Doubt]:
-    """How far a run with steps that share no grid with others is from the reference.
+    """The distance of a run whose steps share no grid with others from the reference.
 
     If that is more than the step explains, it is an error that the reference may have.
 
@@ -80,7 +80,7 @@ def _jumps(numbering: Numbering) -> NDArray:
 
 
 def _near(times: NDArray, others: NDArray, distance: float) -> NDArray:
-    """Which times are near one of others."""
+    """Times that are near one of others."""
     close = np.zeros(len(times), dtype=bool)
     for t in others:
         close |= np.abs(times - t) <= distance
@@ -133,7 +133,7 @@ def disturbed(model: Model, scales: Scales) -> Model:
 
 
 class Growth(NamedTuple):
-    """How a small disturbance of a motion ends.
+    """The end of a small disturbance of a motion.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ class Growth(NamedTuple):
 
 
 def amplified(run: Result, still: Result, scales: Scales) -> Growth:
-    """How a disturbance has grown.
+    """The growth of a disturbance.
 
     Of models that move by rotations alone, angular velocities are looked at.
 

@@ -17,7 +17,7 @@ MOVING = "position", "velocity", "acceleration"        # which both sides have i
 
 
 class Places:
-    """Where quantities of FE nodes are along the beams of a model.
+    """Places of quantities of FE nodes along the beams of a model.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ def doubts(lab: Laboratory) -> list[Doubt]:
 
 
 def refusal(search: Search, found: Tried) -> str:
-    """Why a tolerance is not reached, empty if it is."""
+    """The reason why a tolerance is not reached, empty if it is."""
     lab = search.lab
     largest = next(iter(limits(lab)), None)
     if largest and largest.error > UNSURE * search.tolerance:

@@ -1,4 +1,4 @@
-"""How quantities are compared: at all times, by one number, below a frequency; tolerances in units.
+"""Comparison of quantities: at all times, by one number, below a frequency; tolerances in units.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Why a choice is enough, axis by axis, in sentences with the numbers behind them."""
+"""Reasons for a choice, axis by axis, in sentences with the numbers behind them."""
 
 import numpy as np
 

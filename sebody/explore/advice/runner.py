@@ -150,7 +150,7 @@ class Laboratory:
         return self.reference.error + self.worst(run).error
 
     def worst(self, run: Run) -> Worst:
-        """Where a run differs most from the reference."""
+        """The place and time where a run differs most from the reference."""
         stride = max(round(run.h / self.runs.h), 1)
         return compared(run.values, self.reference.values, self.reference.sizes, (1, stride))
 

@@ -51,7 +51,7 @@ class Part(NamedTuple):
 
 
 class Stiffened:
-    """What stiffens a model with the shapes that it keeps.
+    """Kept shapes, and what stiffens a model that moves by them.
 
     Parameters
     ----------

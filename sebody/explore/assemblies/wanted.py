@@ -1,4 +1,4 @@
-"""Which nodes of a model the interfaces of its superelement are, and what each of them keeps."""
+"""The nodes of a model that are interfaces of its superelement, and what each of them keeps."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple

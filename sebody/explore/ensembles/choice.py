@@ -38,7 +38,7 @@ FACTS = (       # each lets runs be made one by one alone
 
 
 def why_one_by_one(template: Simulation) -> str:
-    """Why the runs of a model are made one by one; empty where they can be made eight at a time.
+    """The reason why runs of a model are made one by one; empty where eight go at a time.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def matrices_at_once(template: Simulation) -> bool:
 
 
 def why_parameters_part(image: Image) -> str:
-    """Why runs with some parameters are made one by one, where the model allows eight at a time."""
+    """The reason why runs with some parameters go one by one, where the model allows eight."""
     if not image.linear:
         return "with these parameters the model is built anew for each run"
     from sebody.engine.lanes.arrays import shared_places  # imports the lanes

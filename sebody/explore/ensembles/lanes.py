@@ -190,7 +190,7 @@ class Lanes:
 
     @property
     def at_once(self) -> int:
-        """How many groups `make` can make in one call; 1 if they are made by `begin` and `run`."""
+        """The number of groups that `make` makes in one call; 1 if `begin` and `run` do."""
         waits = (self._others or self.copies.starts_in_python or not self._has_begun)
         return 1 if waits else max(1, MOST_STEPS // self._last)
 

@@ -83,7 +83,7 @@ def _of_equal_length(places: Sequence[list[int]]) -> NDArray:
 
 def _places(image: Image, row: NDArray, width: int, name: str, starts: NDArray
             ) -> tuple[list[int], list[int]]:
-    """Where what an element keeps or sets, and what it reads, is in the buffer of all numbers.
+    """The places of what an element keeps or sets, and reads, in the buffer of all numbers.
 
     Kernels that have numbers of their own behind their row read what only they know: they get all
     coordinates and frames, but for laws of controllers.

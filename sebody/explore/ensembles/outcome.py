@@ -84,7 +84,7 @@ class Outcome:
 
     @property
     def done(self) -> NDArray:
-        """Which of the runs reached the end, (runs,)."""
+        """The runs that reached the end, (runs,) of bool."""
         found = np.ones(self.runs, dtype=bool)
         found[list(self.failures)] = False
         return found

@@ -1,4 +1,4 @@
-"""Which constants of bodies all members of an ensemble share, and how lanes hold them.
+"""Constants of bodies that all members of an ensemble share, and how lanes hold them.
 
 A kernel for lanes reads eight numbers of a constant, 64 bytes. Of bodies whose constants no
 parameter changes another version of the kernel reads one number for all members. Where a parameter
@@ -59,7 +59,7 @@ def own_parts(image: Image) -> dict[int, Own]:
 
 
 def straight_matrices(image: Image) -> Iterator[tuple[slice, int]]:
-    """Where matrices are whose products are straight code, and how many rows they have."""
+    """The places of matrices whose products are straight code, and how many rows they have."""
     for b, own in own_parts(image).items():
         for index, part, counts in _straight_parts(image, b, own):
             place, = _parts(image, index, lambda _, name=part.name: {name}).values()
@@ -77,7 +77,7 @@ def _straight_parts(image: Image, batch: int, own: Own) -> Iterator[tuple[NDArra
 
 
 def own_places(image: Image) -> Iterator[slice]:
-    """Where these parts are in the buffer of all numbers."""
+    """The places of these parts in the buffer of all numbers."""
     for b, names in own_parts(image).items():
         for index in rows_of(image, b):
             yield from _parts(image, index, lambda kernel, names=names: names).values()
@@ -107,7 +107,7 @@ def rows_of(image: Image, batch: int) -> NDArray:
 
 
 def _parts(image: Image, index: NDArray, chosen: Callable) -> dict[str, slice]:
-    """Where some parts of the constants of a body are in the buffer of all numbers.
+    """The places of some parts of the constants of a body in the buffer of all numbers.
 
     Parameters
     ----------

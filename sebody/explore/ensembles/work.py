@@ -210,5 +210,5 @@ def alike(changes: NDArray, count: int) -> NDArray:
 
 
 def processors() -> int:
-    """How many threads pay."""
+    """The number of threads that pays."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

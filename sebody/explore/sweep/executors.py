@@ -1,4 +1,4 @@
-"""Where the tasks of a sweep run: threads here, processes here, or the workers of a cluster."""
+"""Executors of the tasks of a sweep: threads here, processes here, the workers of a cluster."""
 
 import re
 from collections.abc import Callable, Iterator

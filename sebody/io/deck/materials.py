@@ -99,7 +99,7 @@ def read_orientation(card: Card) -> Orientation:
 
 
 class Section(NamedTuple):
-    """Which material the elements of a set have, and in which axes."""
+    """The material of the elements of a set, and its axes."""
 
     element_set: str
     material: str

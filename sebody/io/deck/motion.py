@@ -1,4 +1,4 @@
-"""How nodes without rows in the matrices follow others: *RIGID BODY, *KINEMATIC, *TIE."""
+"""Motions of nodes without rows in the matrices: *RIGID BODY, *KINEMATIC, *TIE."""
 
 from typing import NamedTuple
 

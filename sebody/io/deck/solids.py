@@ -100,7 +100,7 @@ def deck_solids(deck: Deck, index: dict[int, int], motion: Motion) -> Solids:
 
 
 def _lack(deck: Deck, kind: str, section: Section | None) -> str:
-    """Why elements have no stress; empty if they have."""
+    """The reason why elements have no stress; empty if they have."""
     if kind not in CELLS or CELLS[kind] not in SOLID_KINDS:
         return f"are {kind}, which are not known solids"
     if kind in _UNLIKE:

@@ -1,4 +1,4 @@
-"""What kernels call, for numbers that are lanes; of the fast way to compile alone.
+"""Functions that kernels call, for numbers that are lanes; of the fast way to compile alone.
 
 `sebody.engine.lanes` imports these modules, which puts their functions in place.
 """

@@ -12,7 +12,7 @@ def _subtracted(builder, total, a, b):
 
 @in_lanes(blocks.write_subtract_product)
 def subtract_product(builder, C, A, B):
-    """Of `subtract_product`."""
+    """`subtract_product` in lanes."""
     with short_loop(builder, WORD(0), WORD(LANES * LANES), LANES) as column:
         factors = [read(builder, B, behind(builder, column, k)) for k in range(LANES)]
         for i in range(LANES):
@@ -24,7 +24,7 @@ def subtract_product(builder, C, A, B):
 
 @in_lanes(blocks.write_subtract_blocks_times)
 def subtract_blocks_times(builder, y, rows, A, x, first, end):
-    """Of `subtract_blocks_times`."""
+    """`subtract_blocks_times` in lanes."""
     factors = [read(builder, x, WORD(k)) for k in range(LANES)]
     with short_loop(builder, first, end) as p:
         _subtract_block_times(builder, y, rows, A, p, factors)
@@ -32,7 +32,7 @@ def subtract_blocks_times(builder, y, rows, A, x, first, end):
 
 @in_lanes(blocks.write_multiply_and_subtract)
 def multiply_and_subtract(builder, y, rows, A, x, first, end):
-    """Of `multiply_and_subtract`."""
+    """`multiply_and_subtract` in lanes."""
     given, begin = [read(builder, x, WORD(k)) for k in range(LANES)], builder.mul(
         end, WORD(LANES * LANES))
     factors = []

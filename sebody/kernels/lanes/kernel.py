@@ -56,7 +56,7 @@ def address_in_lanes(module: ModuleType, own: Own = None, matrices: bool = False
 
 
 def is_compiled(path: Path, own: Own = None, matrices: bool = False) -> bool:
-    """Whether the kernel in a file was compiled for lanes; the file is not imported."""
+    """Tell if the kernel in a file was compiled for lanes; the file is not imported."""
     return is_kept_in_lanes(path, kernel_hash(path), _kind(own, matrices))
 
 

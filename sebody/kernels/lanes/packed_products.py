@@ -49,7 +49,7 @@ class _Groups(Groups):
                    builder.add(self.vector, k))
 
     def straight(self):
-        """Whether there is straight code."""
+        """Tell if there is straight code."""
         builder, own = self.builder, self.builder.load(self._words)
         return self._points(own) if self._shared else builder.icmp_signed(
             "!=", self._word(AT_ADDRESS), own)
@@ -72,27 +72,27 @@ class _Groups(Groups):
 
 @in_lanes(packed_strips.write_times)
 def packed(builder, matrices, x, out, count):
-    """Of `packed_times`."""
+    """`packed_times` in lanes."""
     _times(builder, matrices, x, x, out, count)
 
 
 @in_lanes(packed_strips.write_times_both)
 def packed_both(builder, matrices, x, y, of_x, of_y, count):
-    """Of `packed_times_both`."""
+    """`packed_times_both` in lanes."""
     for vector, out in ((x, of_x), (y, of_y)):
         call(builder, packed, (matrices, vector, out, count))
 
 
 @in_lanes(packed_strips.write_more_times)
 def add_packed(builder, matrices, x, out):
-    """Of `add_packed_times`."""
+    """`add_packed_times` in lanes."""
     _straight_or(builder, AT_MORE, (matrices, x, x, out, WORD(0)),
                  lambda: _add_strips(builder, matrices, x, x, out))
 
 
 @in_lanes(packed_strips.write_couplings)
 def couplings(builder, matrices, x, y, out, count):
-    """Of `couplings_times`."""
+    """`couplings_times` in lanes."""
     _times(builder, matrices, x, y, out, count)
 
 
@@ -190,14 +190,14 @@ def _add_twice(groups, forward, out):
 
 @in_lanes(packed_sums.write_sum)
 def sum_packed(builder, matrices, factors, out, height):
-    """Of `add_packed`."""
+    """`add_packed` in lanes."""
     _sum_strips(builder, matrices, lambda _, matrix, lane: read(builder, factors, matrix), out, out,
                 height)
 
 
 @in_lanes(packed_sums.write_sum_of_couplings)
 def sum_couplings(builder, matrices, factors, scales, of_x, of_y, products, size, height):
-    """Of `add_couplings`."""
+    """`add_couplings` in lanes."""
     with short_loop(builder, WORD(0), products) as k:
         factor, first = read(builder, factors, k), builder.mul(k, size)
         with short_loop(builder, WORD(0), size) as row:
@@ -215,7 +215,7 @@ def sum_couplings(builder, matrices, factors, scales, of_x, of_y, products, size
 
 
 def _sum_strips(builder, matrices, scale, of_x, of_y, height):
-    """Of every strip, or what mirrors it, `scale` knows the place, the matrix and the lane."""
+    """The sum of strips, or of their mirrors; `scale` knows the place, the matrix and the lane."""
     def once(groups):
         with short_loop(builder, WORD(0), groups.strips) as strip:
             place, (matrix, row) = groups.head(0, strip), groups.matrix_and_row(0, strip)

@@ -24,7 +24,7 @@ NOTHING = ir.Constant(VECTOR, [0.0] * VECTOR.count)
 
 
 def read(builder, pointer, place):
-    """What is at a place: lanes, or a number that all members share."""
+    """The numbers at a place: lanes, or a number that all members share."""
     number = builder.load(builder.gep(pointer, [place]))
     return number if number.type == VECTOR else same(builder, number)
 
@@ -127,50 +127,50 @@ def _by_columns(builder, A, x, out, rows, columns, height, add):
 
 @in_lanes(dense.write_columns)
 def multiply(builder, A, x, out, rows, columns):
-    """Of `columns_times`: columns of whole vectors of `LANES` numbers."""
+    """`columns_times` in lanes: columns of whole vectors of `LANES` numbers."""
     _by_rows(builder, [(A, x, columns)], out, rows, whole_vectors(builder, rows), False)
 
 
 @in_lanes(dense.write_columns_of_all)
 def multiply_all(builder, A, x, y, z, of_x, of_y, of_z, rows, columns):
-    """Of `columns_times_all`."""
+    """`columns_times_all` in lanes."""
     for given, out in ((x, of_x), (y, of_y), (z, of_z)):
         multiply(builder, A, given, out, rows, columns)
 
 
 @in_lanes(dense.write_block)
 def block(builder, A, x, out, rows, columns, height):
-    """Of `block_times`."""
+    """`block_times` in lanes."""
     _by_rows(builder, [(A, x, columns)], out, rows, height, False)
 
 
 @in_lanes(dense.write_more_block)
 def add_block(builder, A, x, out, rows, columns, height):
-    """Of `add_block_times`."""
+    """`add_block_times` in lanes."""
     _by_rows(builder, [(A, x, columns)], out, rows, height, True)
 
 
 @in_lanes(dense.write_more_blocks)
 def add_blocks(builder, A, x, B, y, out, rows, columns, of_B, height):
-    """Of `add_blocks_times`."""
+    """`add_blocks_times` in lanes."""
     _by_rows(builder, [(A, x, columns), (B, y, of_B)], out, rows, height, True)
 
 
 @in_lanes(dense.write_dots)
 def dots(builder, A, x, out, rows, columns, height):
-    """Of `rows_times`."""
+    """`rows_times` in lanes."""
     _by_columns(builder, A, x, out, rows, columns, height, False)
 
 
 @in_lanes(dense.write_more_dots)
 def add_dots(builder, A, x, out, rows, columns, height):
-    """Of `add_rows_times`."""
+    """`add_rows_times` in lanes."""
     _by_columns(builder, A, x, out, rows, columns, height, True)
 
 
 @in_lanes(dense.write_more_columns)
 def more_columns(builder, A, x, out, rows, columns, height):
-    """Of the second part of `arrow_times`."""
+    """The second part of `arrow_times` in lanes."""
     _by_rows(builder, [(A, x, columns)], out, rows, height, True)
 
 
@@ -179,7 +179,7 @@ def more_columns(builder, A, x, out, rows, columns, height):
 
 @in_lanes(coordinates.write_all_to_free)
 def all_to_free(builder, *args):
-    """Of `all_to_free`; numbers beyond the last are zeros, as strips read whole vectors.
+    """`all_to_free` in lanes; numbers beyond the last are zeros, as strips read whole vectors.
 
     Axes of a body are often those of its frame: entries that are zero in all lanes are left out.
     """
@@ -232,7 +232,7 @@ def _dots(builder, sums_of_pairs, count):
 
 @in_lanes(coordinates.write_follow)
 def follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
-    """Of `follow`: a row of z is read to its free numbers alone, so those behind may be written."""
+    """`follow` in lanes: a row of z is read to its free numbers, so those behind may change."""
     half = ir.Constant(VECTOR, [0.5] * VECTOR.count)
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b = (builder.gep(row, [builder.mul(b, height)]) for row in (Zq, Zd))
@@ -246,7 +246,7 @@ def follow(builder, Zq, Zd, z, zd, zdd, free, slaved, height):
 
 @in_lanes(coordinates.write_follow_changes)
 def follow_changes(builder, Zq, Zd, Za, dz, dzd, dzdd, free, slaved, height):
-    """Of `follow_changes`."""
+    """`follow_changes` in lanes."""
     with short_loop(builder, WORD(0), slaved) as b:
         Zq_b, Zd_b, Za_b = (builder.gep(row, [builder.mul(b, height)]) for row in (Zq, Zd, Za))
         place = builder.add(free, b)

@@ -33,7 +33,7 @@ COSINE = (4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894
 
 @compiled(forceinline=True)
 def _sine_and_cosine(x):
-    """Of the angle less a multiple of pi/2, and which multiple it is: 0, 1, 2 or 3."""
+    """Sine and cosine of the angle less a multiple of pi/2, and this multiple: 0, 1, 2 or 3."""
     n = rounded_up(x * (2.0 / math.pi) - 0.5)
     r = ((x - n * PARTS[0]) - n * PARTS[1]) - n * PARTS[2]
     z = r * r

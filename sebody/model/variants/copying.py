@@ -68,7 +68,7 @@ def checked(model: Mechanism) -> Mechanism:
 
 
 def fewer(model: Mechanism, made: Mechanism) -> str:
-    """How many unknowns a changed model saves, in words."""
+    """The number of unknowns that a changed model saves, in words."""
     saved = sum(unknowns(model)) - sum(unknowns(made))
     return f"{saved} unknown{'s' * (saved != 1)} fewer"
 

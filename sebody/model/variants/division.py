@@ -78,7 +78,7 @@ def _counted(one: Beam) -> str:
 
 
 def _described(model: Mechanism, name: str) -> Beam:
-    """How a beam was built; refused if it cannot be built anew."""
+    """A beam as it was built; refused if it cannot be built anew."""
     inputs.name(name, "name of a beam")
     beams = [one for one in checked(model).beams if one.name == name]
     if len(beams) != 1:

@@ -1,4 +1,4 @@
-"""How beams were built, in a plane of symmetry: so they can be divided anew there."""
+"""Beams as they were built, in a plane of symmetry: so they can be divided anew there."""
 
 from dataclasses import replace
 from typing import cast

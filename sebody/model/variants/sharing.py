@@ -81,7 +81,7 @@ def _is_free(model: Mechanism, node: Node) -> bool:
 
 
 def _kinds(model: Mechanism, joint: Joint) -> list[str]:
-    """Which DOF blocks of its nodes may become one; none where friction reads the equations.
+    """The DOF blocks of its nodes that may become one; none where friction reads the equations.
 
     Nor of a joint that lets go or locks.
     """

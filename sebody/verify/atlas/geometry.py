@@ -49,7 +49,7 @@ def _turn(frame: str, angle: float) -> float:
 
 
 def half_turn() -> Finding:
-    """How far one end of a body can be rotated against the other, and what its frame does."""
+    """Relative rotations of the ends of a body up to half a turn, and what its frame does."""
     finding = Finding(
         "relative rotations near 180 degrees",
         "a mean frame follows half the rotation, up to 180 degrees",

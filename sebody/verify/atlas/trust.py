@@ -241,7 +241,7 @@ def _column(load: float, aside: float = 0.0,
 
 
 def _grown(load: float) -> float:
-    """How far a small velocity aside moves the middle, relative to a drift."""
+    """The shift of the middle after a small velocity aside, relative to a drift."""
     aside = 1e-6
     result = simulate(_column(load, aside), 5e-5, GROWING)
     return float(abs(result["column 2.position"][-1, 0])) / (aside * GROWING)

@@ -1,4 +1,4 @@
-"""Where the time of a step goes: the cost of each kind of element, of the elimination, of the rest.
+"""Time of a step by its parts: each kind of element, the elimination, the rest.
 
 Forces, matrices and the elimination are evaluated many times in the last state of a run, each kind
 by itself. The rest of a step is what the loop does besides: prediction, rotations, sums, records.

@@ -75,7 +75,7 @@ def _put(name, side: tuple) -> None:
 
 
 def _covered(box: NDArray, frame, taken: list[NDArray], dots: NDArray) -> float:
-    """How bad a place is: outside the frame is worst, across a name is worse than over points."""
+    """A penalty of a place: outside the frame is worst, across a name is worse than over points."""
     inside = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]])
     outside = max((inside[0] - box[0]).max(), (box[1] - inside[1]).max(), 0.0)
     across = sum(bool((box[0] < other[1]).all() and (other[0] < box[1]).all()) for other in taken)

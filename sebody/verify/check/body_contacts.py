@@ -77,7 +77,7 @@ def _body(case: Case) -> Case:
 
 
 def _depth(case: Case) -> float:
-    """How deep the point is, by rotations of SciPy."""
+    """The depth of the point, by rotations of SciPy."""
     body, c, d = _body(case), constants_of(case), case.dimension
     R0 = frame_rotation(body).as_matrix()[:d, :d]
     y = local_coordinates(body)

@@ -96,7 +96,7 @@ def _place(case: Case, way: float | None = None) -> NDArray:
 
 
 def _row(case: Case, d: int, way: float | None = None) -> NDArray:
-    """What the path has at a way in the frame of the body, so many numbers."""
+    """The first numbers of the path at a way, in the frame of the body."""
     body, path, n = _body(case), constants_of(case)["path"], case.own
     rows = path[HEAD + len(KNOTS):][:2 * len(KNOTS) * d * (1 + n + FOLLOWERS)].reshape(
         len(KNOTS), 2, 1 + n + FOLLOWERS, d)

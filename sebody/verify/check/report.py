@@ -31,7 +31,7 @@ def table(rows: list[CheckRow]) -> str:
 
 
 def verdict(rows: list[CheckRow]) -> str:
-    """How many criteria of how many kernels hold or fail."""
+    """The count of criteria of kernels that hold or fail."""
     judged = [row for row in rows if row.limit < math.inf]
     failed, kernels = [row for row in judged if not row.passed], {row.kernel for row in rows}
     if failed:

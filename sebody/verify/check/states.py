@@ -101,13 +101,13 @@ class Case(NamedTuple):
 
     @property
     def first_rotation(self) -> int:
-        """Where rotations begin among the unknowns; elements may have scalars before them."""
+        """The first rotation among the unknowns; elements may have scalars before them."""
         own = getattr(self.module, "ROTATIONS", None)
         return first_rotation(self.n_positions, self.planar) if own is None else own
 
     @property
     def first_mode(self) -> int:
-        """Where internal modes begin among the unknowns."""
+        """The first internal mode among the unknowns."""
         return first_mode(self.n_positions, self.n_rotations, self.planar)
 
     @property
