@@ -18,7 +18,8 @@ from sebody.reduction import craig_bampton
 INDICES = [f.name for f in fields(System) if f.name not in (
     "address", "index", "constants", "rotation_at", "dimension", "part", "inertias",
     "massless_axes", "magnitude", "table_at", "table_times", "table_pieces", "corners", "jumps",
-    "functions", "series", "series_times", "series_values", "prescribed", "prescribed_factor",
+    "functions", "gravity_ports", "gravity_fields", "series", "series_times", "series_values",
+    "prescribed", "prescribed_factor",
     "links", "control", "regularized", "massless", "body_stiffness", "body_mass", "damped",
     "guarded", "aid", "routines", "shared")]
 OF_LINKS = [f.name for f in fields(Links) if f.name != "arm_vectors"]
