@@ -68,11 +68,11 @@ def test_interrupted_where_the_loop_asks_for_factors_or_a_solution(monkeypatch, 
     whole.run_to(0.05)
     exchange, left = Aid._exchange, [asked]
 
-    def interrupted(self, what):
+    def interrupted(self, run, what):
         left[0] -= 1
         if left[0] == 0:
             raise KeyboardInterrupt
-        exchange(self, what)
+        exchange(self, run, what)
     monkeypatch.setattr(Aid, "_exchange", interrupted)
     with pytest.raises(Interrupted):
         first.run_to(0.05)
