@@ -22,8 +22,7 @@ SPATIAL = (model_cases.BODIES | model_cases.JOINTS | model_cases.LOADS
 BUILDERS = [name for name, value in vars(Model).items()
             if inspect.isfunction(value) and not name.startswith("_") and name != "summary"]
 # refused by `planar(model)` by name: their planar kernels exist, the way from space is not written
-WITHOUT = {"table_bushing"} | {
-    f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
+WITHOUT = {f"{way}_{part}" for way in ("line", "slide", "turn") for part in ("motor", "rotor")}
 # on coordinates of a body, see variants/planar.py
 OF_BODIES = ("body_load_", "body_contact_", "body_path_", "path_turn_", "path_across_",
              "path_load_", "mode_force", "friction_way", "way_")

@@ -137,9 +137,44 @@ def test_refused(given, said):
     assert not model.loads
 
 
-def test_a_planar_form_is_refused_by_name():
-    model = block()
-    for rate in (model.nodes["block"].position, model.nodes["block"].rotation):
-        rate.rate[:] = 0.0
-    with pytest.raises(InputError, match="mount"):
-        planar(model)
+SECOND = {"force": [(-0.3, -20.0), (0.0, 0.0), (0.5, 15.0)]}
+
+
+def mounted(normal, side=1.0, **preloads):
+    """A body that moves in a plane on a bushing with one axis along the normal or against it."""
+    axes = np.diag([1.0, side, side]) @ np.roll(np.eye(3), normal - 2, axis=1)
+    inside = Rotation.from_rotvec((0.0, 0.0, 0.4)).as_matrix()
+    model, names = Model(), np.roll(["x", "y", "z"], 2 - normal)
+    base, node = model.node("base", PLACE), model.node("block", PLACE)
+    model.fix(base)
+    model.rigid_body("mass", node, MASS, INERTIA * np.eye(3))
+    laws = {names[0]: LAWS["x"], names[1]: SECOND, "r" + names[2]: LAWS["rz"]}
+    laws |= {axis: {"force": ROWS, "preload": preload} for axis, preload in preloads.items()}
+    model.bushing(base, node, 50.0, 0.3, turning_stiffness=4.0, rotation=TURN @ inside @ axes,
+                  laws=laws, name="mount")
+    model.initial_velocity(node, TURN @ (1.5, -0.8, 0.0), TURN[:, 2] * SPIN)
+    return model
+
+
+@pytest.mark.parametrize("normal, side", [(0, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)])
+def test_in_a_plane_as_built_there(normal, side):
+    """Whichever axis is the normal, seen from its tip; no law is symmetric."""
+    flat = Model(planar=True)
+    base, node = flat.node("base", PLACE[:2]), flat.node("block", PLACE[:2])
+    flat.fix(base)
+    flat.rigid_body("mass", node, MASS, INERTIA)
+    c, s = np.cos(0.4), side * np.sin(0.4)
+    flat.bushing(base, node, 50.0, 0.3, turning_stiffness=4.0, rotation=[[c, -s], [s, c]],
+                 laws=LAWS | {"y": SECOND})
+    flat.initial_velocity(node, (1.5, -0.8 * side), SPIN * side)
+    variant = planar(mounted(normal, side))
+    assert "moments of mount follow angles, in space their sines" in str(variant)
+    found, built = (simulate(one, 1e-3, 0.5, EXACT)["energy.kinetic"]
+                    for one in (variant.model, flat))
+    assert found == pytest.approx(built, abs=1e-10)
+    assert np.ptp(built) > 1.0
+
+
+def test_laws_that_push_out_of_the_plane_are_refused():
+    with pytest.raises(InputError, match="'mount' pushes out of the plane where it is at rest"):
+        planar(mounted(2, z=0.5))

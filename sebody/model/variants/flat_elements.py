@@ -271,6 +271,26 @@ def _bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
     return f"planar_{one.kind}", kept | {"e1": turn[:2, 0], "e2": turn[:2, 1]}
 
 
+def _table_bushing(flat: Flattening, one: Element) -> tuple[str, dict]:
+    """One axis is normal to the plane; laws along it and of tilts push nowhere in the plane."""
+    axes = np.array([one.constants[f"e{k}"] for k in (1, 2, 3)]) @ flat.plane.axes
+    normal = int(np.argmax(abs(axes[:, 2])))
+    side = np.sign(axes[normal, 2])
+    if abs(axes[normal, 2]) < 1.0 - PARALLEL:
+        raise InputError(f"{one.name!r} has no axis normal to the plane, along which its laws act")
+    first, second = ((normal + step) % 3 for step in ((1, 2) if side > 0 else (2, 1)))
+    for key in (str(normal + 1), f"t{first + 1}", f"t{second + 1}"):
+        if any(unpacked(one.vector(name + key)).at(np.zeros(1)) for name in ("force", "damper")):
+            raise InputError(f"the law of {one.name!r} pushes out of the plane where it is at rest")
+    tables = {}
+    for name in ("force", "damper"):
+        about = one.vector(f"{name}t{normal + 1}")
+        tables[f"{name}t3"] = about if side > 0 else unpacked(about).mirrored().packed()
+        for k, axis in enumerate((first, second), start=1):
+            tables[f"{name}{k}"] = one.vector(f"{name}{axis + 1}")
+    return "planar_table_bushing", tables | {"e1": axes[first, :2], "e2": axes[second, :2]}
+
+
 def _turn_motor(flat: Flattening, one: Element) -> tuple[str, dict]:
     along = flat.axial(one.vector("e"), f"the axis of {one.name!r}")
     return "planar_turn_motor", {"gain": one.number("gain") * np.sign(along)}
@@ -295,6 +315,7 @@ ELEMENTS: dict[str, Callable[[Flattening, Element], tuple[str, dict]]] = {
     "torque": _torque, "follower_torque": _torque, "spring": _unchanged,
     "torsion_spring": _torsion_spring, "table_spring": _unchanged,
     "table_torsion_spring": _table_torsion_spring, "bushing": _bushing, "bearing": _bushing,
+    "table_bushing": _table_bushing,
     "turn_motor": _turn_motor, "turn_rotor": _turn_rotor, "slide_motor": _along,
     "slide_rotor": _along, "line_motor": _unchanged, "line_rotor": _unchanged,
     "rope_wheel": flat_wheel, "friction_rope": _unchanged, "way_motor": _of_winch,

@@ -16,6 +16,7 @@ from sebody.model.frames import FRAMES
 from sebody.model.mechanism import Mechanism
 from sebody.model.parts import Connection, Element, Superelement
 from sebody.model.plane import Plane
+from sebody.model.spring_laws import unpacked
 from sebody.model.switching import refuse_switches
 from sebody.model.variants.copying import Variant, checked, load_name, unknowns
 from sebody.model.variants.flat_beams import flat_beams
@@ -90,7 +91,9 @@ def planar(model: Mechanism) -> Variant:
 def _of_bushings(model: Mechanism) -> str:
     """Bushings' terms that are not the same in the plane."""
     names = [one.name for one in model.loads
-             if one.kind in ("bushing", "bearing") and np.any(one.constants["kt"])]
+             if one.kind in ("bushing", "bearing") and np.any(one.constants["kt"])
+             or one.kind == "table_bushing" and any(
+                 unpacked(one.vector(f"forcet{k}")).behind.any() for k in (1, 2, 3))]
     return f"; moments of {', '.join(names)} follow angles, in space their sines" if names else ""
 
 
