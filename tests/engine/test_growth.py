@@ -16,6 +16,7 @@ from sebody import (
     generalized_alpha,
     piecewise,
 )
+from sebody.engine import growth
 from sebody.fem import Section, straight_beam
 from sebody.reduction import craig_bampton
 from sebody.scenes import chain, hinged_beam, spin_up
@@ -175,3 +176,18 @@ def test_models_without_bodies_are_not_looked_at():
     model = Model()
     model.rigid_body("top", model.node("top", (0, 0, 1)), 1.0, np.diag([0.1, 0.2, 0.25]))
     assert run(model, 0.01, 0.1)[0].state.guard.off == 1.0
+
+
+def test_what_energy_may_grow_by_follows_the_largest_turn_of_a_frame():
+    """Frames of bodies are turned by known angles from where a step left them."""
+    run = Simulation(chain.build(links=3).model, 1e-3).run_to(0.02)
+    state, found = run.state, []
+    frames = state.frames.reshape(-1, 3, 3)
+    for scale in (1.0, 2.0):
+        angles = scale * np.array([0.01, 0.03, 0.02])
+        axes = np.array([(0.6, 0.0, 0.8), (0.0, -0.8, 0.6), (2.0, 1.0, -2.0) / np.float64(3.0)])
+        turns = Rotation.from_rotvec(angles[:, None] * axes).as_matrix()
+        state.frames_old[:] = (turns @ frames).ravel()
+        found.append(growth.look_at_energies(run.system, state)[2])
+    more = growth.TURNED * (0.06**2 - 0.03**2) * state.guard.most_kinetic
+    assert found[1] - found[0] == pytest.approx(more, rel=1e-3)     # sine and angle: a^2 / 12
