@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sebody import Model, Simulation
 from sebody.engine.links import place_dependent, pull_back
@@ -100,3 +101,32 @@ def test_models_that_turn_no_arms_in_the_plane_remember_nothing():
     free.rigid_body("body", free.node("base", (0, 0)), 1.0, 1.0)
     for model in (spatial, free):
         assert Simulation(model, 1e-3).state.turns.size == 0
+
+
+def test_rates_in_space_are_derivatives_of_a_motion():
+    """Central differences of places while the root moves and turns with constant accelerations."""
+    model = Model()
+    foot = model.node("foot", (0.3, -0.2, 0.7))
+    model.rigid_body("crank", foot, 1.3, 0.4 * np.eye(3), centre=(0.6, 0.1, 0.2))
+    model.attach("elbow", (1.1, 0.4, -0.3), foot)
+    model.rigid_body("end", "elbow", 0.3, 0.1 * np.eye(3))
+    run = Simulation(model, 1e-3)
+    state, links, rng = run.state, run.system.links, np.random.default_rng(8)
+    (x, root, first, last), = links.dependent
+    (matrix, c), = links.arms[first:last]
+    turn = Rotation.random(random_state=3)
+    state.R[9 * matrix:9 * matrix + 9] = turn.as_matrix().ravel()
+    for part in (state.q, state.v, state.a):
+        part[:] = rng.uniform(-1.0, 1.0, part.size)
+    q, v, a = (part[root:root + 3].copy() for part in (state.q, state.v, state.a))
+    rate, change, arm = state.v[c:c + 3].copy(), state.a[c:c + 3].copy(), links.arm_vectors[first]
+    place_dependent(links, state.q, state.v, state.a, state.R, state.turns)
+
+    def place(t):
+        turned = turn * Rotation.from_rotvec(rate * t + change * t**2 / 2)
+        return q + v * t + a * t**2 / 2 + turned.apply(arm)
+    h = 1e-3
+    before, now, after = place(-h), place(0.0), place(h)
+    assert state.q[x:x + 3] == pytest.approx(now, abs=1e-14)
+    assert state.v[x:x + 3] == pytest.approx((after - before) / (2.0 * h), abs=1e-5)
+    assert state.a[x:x + 3] == pytest.approx((after - 2.0 * now + before) / h**2, abs=1e-5)
