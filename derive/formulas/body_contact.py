@@ -16,7 +16,7 @@ so its power is that on the unknowns, and in a rigid motion of body and surface 
 """
 
 import itertools
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import sympy as sp
@@ -38,7 +38,7 @@ from sebody.derive.formulas.kinematics import (
     local_velocity,
     unknown_rules,
 )
-from sebody.derive.formulas.pulled_back import forces_on_unknowns
+from sebody.derive.formulas.pulled_back import forces_on_coordinates, forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
 from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.symbolic.rotations import cross
@@ -157,24 +157,15 @@ def _point(q: Quantities, frame: Frame) -> tuple[tuple[Step, ...], tuple[Step, .
 def _forces(q: Quantities, frame: Frame) -> tuple[Stage | Solve, ...]:
     """From the force on the point to those conjugate to y, to the frame, to the unknowns."""
     f, arm = (q.space.quantity(name, "vector", "element") for name in ("fp", "rp"))
-    conjugate = {"position": q.f, "rotation": q.m, "mode": q.fm}
     on_frame = cross(arm.symbols, f.symbols)
     _check_work(q, f, on_frame)
     return (
         Stage("force on the point in frame axes", "element",
               sets=((f, q.R0.symbols.T * _force(q).symbols),)),
-        *(Stage(f"forces conjugate to the local coordinates: {home}s", home,
-                sets=((of, _filled(of, [shape.dot(f.symbols) for shape in _shapes(q, home)])),))
-          for home, of in conjugate.items()),
+        *forces_on_coordinates(q, partial(_shapes, q), f.symbols),
         *forces_on_unknowns(q, frame, f.symbols, Stage(
             "moment of the force on the frame", "element", adds=((q.W, on_frame),),
             continues=True)))
-
-
-def _filled(of: Quantity, values: list[sp.Expr]) -> sp.Matrix:
-    """Components where a quantity has some, zero elsewhere."""
-    found = iter(values)
-    return sp.Matrix([next(found) if isinstance(s, sp.Symbol) else 0 for s in of.symbols])
 
 
 def _check_work(q: Quantities, f: Quantity, on_frame: sp.Matrix) -> None:

@@ -18,31 +18,28 @@ from functools import cache
 import sympy as sp
 
 from sebody.derive.form.counts import n
-from sebody.derive.form.functions import PATH_CHANGE, PATH_DIRECTION
+from sebody.derive.form.functions import PATH_DIRECTION
 from sebody.derive.form.spaces import Space
-from sebody.derive.form.steps import Invert, Role, Solve, Stage, Step, call, search
+from sebody.derive.form.steps import Role, Solve, Stage, Step, search
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
-from sebody.derive.formulas.kinematics import local_displacement, local_velocity, unknown_rules
-from sebody.derive.formulas.motion import rate_of, time_rules, turning
-from sebody.derive.formulas.path import (
+from sebody.derive.formulas.frames.frame import Frame, FrameOption
+from sebody.derive.formulas.motion import rate_of
+from sebody.derive.formulas.path_direction import SECTION, VECTOR, along_way, edges
+from sebody.derive.formulas.path_steps import (
     BENDS,
-    CHANGES,
     HEAD,
     SHAPES,
     SLOPES,
     TABLE,
     Names,
     Steps,
-    filled,
+    Timed,
+    local,
     varied,
 )
-from sebody.derive.formulas.path_direction import SECTION, VECTOR, along_way, edges
 from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.symbolic.rotations import cross
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 
@@ -70,14 +67,11 @@ def _located(q: Quantities, frame: Frame, names: Names
         Stage("its part in the direction", "element", sets=((c, sp.Matrix([E.dot(g.symbols)])),)),
         Stage("weighted equation", "element", sets=((names.scalar("phi"), sp.Matrix([
             names.scalar("share").symbols[0] * c.symbols[0]])),)))
-    inverses = tuple(Invert(step) for step in frame.velocity if isinstance(step, Solve))
-    return (
-        origin_stage(q, q.x0, q.x), *frame.locate, local_displacement(q),
-        Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
+    return local(q, frame, (
         search("place on the path in the frame, and direction", PATH_DIRECTION, TABLE,
                names.scalar("way").symbols[0], arrays.y, n, HEAD, SHAPES, SLOPES, BENDS, SECTION,
                operations=0),
-        *equation, *inverses), equation
+        *equation)), equation
 
 
 def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, ...]:
@@ -87,7 +81,6 @@ def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, .
     slope, g, arm, f = (names.vector(name).symbols for name in ("rs", "gap", "rp", "fp"))
     on_frame = cross(arm, f)
     _check_work(q, names)
-    conjugate = {"position": q.f, "rotation": q.m, "mode": q.fm}
     return (
         Stage("force on the body in frame axes", "element",
               sets=((names.vector("fp"), -w * mu * E),)),
@@ -96,9 +89,7 @@ def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, .
             names.vector("tangent"), q.R0.symbols * (w * slope - ws * g)),), role=Role.BY_RULE),
         Stage("force along the path", "element", sets=((names.scalar("gs"), sp.Matrix(
             [mu * (ws * c + w * (E_s.dot(g) - E.dot(slope)))])),)),
-        *(Stage(f"forces conjugate to the local coordinates: {home}s", home,
-                sets=((of, filled(of, [shape.dot(f) for shape in names.rows(SHAPES, home)])),))
-          for home, of in conjugate.items()),
+        *names.on_coordinates(f),
         *forces_on_unknowns(q, frame, f, Stage(
             "moment of the force on the frame", "element", adds=((q.W, on_frame),),
             continues=True)))
@@ -115,9 +106,8 @@ def _check_work(q: Quantities, names: Names) -> None:
 def _moved(q: Quantities, frame: Frame, names: Names, equation: tuple[Stage, ...],
            forces: tuple[Stage | Solve, ...]) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """Differentials of the equation and of the forces, by the chain rule."""
-    chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
     ds = q.space.d(names.scalar("way")).symbols[0]
-    steps, of_y = varied(q, frame, chain, names)
+    chain, steps, of_y = varied(q, frame, names)
     by_y, bent = names.vector("dry"), names.vector("drsy")
     dr, dslope = names.vector("drh_y"), names.vector("rsd_y")
     steps += [
@@ -140,9 +130,8 @@ def _moved(q: Quantities, frame: Frame, names: Names, equation: tuple[Stage, ...
 
 def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """The equation's rate and second rate: differentials in the direction of time."""
-    clock = Linearizer(q.space, time_rules(q), lambda quantity: rate_of(q, quantity))
-    of_y = tuple(step for step in rates(q) if step.sets)
-    first, later = turning(q, frame, clock, of_y)
+    time = Timed(q, frame)
+    clock, eta = time.clock, time.rates
     sd, sdd, w, ws, wss, c = (names.scalar(name).symbols[0] for name in (
         "wayd", "waydd", "share", "share_s", "share_ss", "off"))
     by_y, r_d, g_d, by_slope, slope_d = (names.vector(name) for name in (
@@ -150,7 +139,6 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
     c_d, (E, E_s, _) = names.scalar("off_d"), edges(q)
     R0, slope, arm, g = (q.R0.symbols, *(names.vector(name).symbols for name in (
         "rs", "rp", "gap")))
-    eta = {"position": q.eu, "rotation": q.ep, "mode": q.em}
     moving = (
         *names.summed(by_y, SHAPES, eta, "rate of the place"),
         Stage("rate of the place in the frame", "element",
@@ -161,9 +149,8 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
         Stage("rate of its part in the direction", "element", sets=((c_d, sp.Matrix(
             [sd * E_s.symbols.dot(g) + E.symbols.dot(g_d.symbols)])),)))
     weighted = sp.Matrix([ws * sd * c + w * c_d.symbols[0]])
-    rate = (local_velocity(q), origin_stage(q, q.v0, q.vs), *first, *of_y, *moving,
-            Stage("rate of the weighted equation", "element",
-                  sets=((names.scalar("phid"), weighted),)))
+    rate = time.rate(*moving, Stage("rate of the weighted equation", "element",
+                                    sets=((names.scalar("phid"), weighted),)))
     bending = (*names.summed(by_slope, SLOPES, eta, "turning of the path"),
                Stage("rate of the slope", "element", sets=((
                    slope_d, by_slope.symbols + names.vector("rss").symbols * sd),)))
@@ -176,8 +163,6 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
     second = differential(weighted, {
         ws: wss * sd, w: ws * sd, sd: sdd, c: c_d.symbols[0],
         c_d.symbols[0]: rate_of(q, c_d).symbols[0]})
-    return rate, (
-        origin_stage(q, q.a0, q.acc), *later, *bending,
-        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.eta, n, VECTOR, CHANGES),
-        *accelerated, Stage("second rate of the weighted equation", "element",
-                            sets=((names.scalar("phidd"), second),)))
+    return rate, time.second(names, bending, *accelerated, Stage(
+        "second rate of the weighted equation", "element",
+        sets=((names.scalar("phidd"), second),)))

@@ -29,31 +29,28 @@ import sympy as sp
 from sebody.contract.layout import Part
 from sebody.derive.form.arrays import Place, constant, scratch
 from sebody.derive.form.counts import n
-from sebody.derive.form.functions import PATH_CHANGE, PATH_DIRECTION, STUMPFF_1_TO_7
+from sebody.derive.form.functions import PATH_DIRECTION, STUMPFF_1_TO_7
 from sebody.derive.form.spaces import Quantity, Space
-from sebody.derive.form.steps import Invert, Solve, Stage, Step, Values, call, search
+from sebody.derive.form.steps import Solve, Stage, Step, Values, search
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
+from sebody.derive.formulas.frames.frame import Frame, FrameOption
 from sebody.derive.formulas.inertia.rigid_part import along_tangent, turned
-from sebody.derive.formulas.kinematics import local_displacement, local_velocity, unknown_rules
-from sebody.derive.formulas.motion import rate_of, time_rules, turning
-from sebody.derive.formulas.path import (
+from sebody.derive.formulas.motion import rate_of
+from sebody.derive.formulas.path_steps import (
     BENDS,
-    CHANGES,
     HEAD,
     SHAPES,
     SLOPES,
     TABLE,
     Names,
     Steps,
-    filled,
+    Timed,
+    local,
     varied,
 )
 from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.passes.lower import Names as Known
 from sebody.derive.symbolic.rotations import cross, exp, stumpff
 from sebody.derive.symbolic.variation import Rules, along, check_same, differential, rotating
@@ -135,15 +132,12 @@ def _located(q: Quantities, frame: Frame, of: _Parts
         Stage("weighted equation", "element", sets=((
             of.names.scalar("phi"), sp.Matrix([w * of.c.symbols[0]])),)))
     _check_slope(of)
-    inverses = tuple(Invert(step) for step in frame.velocity if isinstance(step, Solve))
-    return (
-        origin_stage(q, q.x0, q.x), *frame.locate, local_displacement(q),
-        Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
+    return local(q, frame, (
         search("section of the path in the frame", PATH_DIRECTION, TABLE, of.number("way"),
                arrays.y, n, HEAD, SHAPES, SLOPES, BENDS, SECTION, operations=0),
         Values("coefficients of exp and T, and for their derivatives",
                tuple(getattr(q, f"r{k}") for k in range(1, 8)), STUMPFF_1_TO_7, of.psi, 60),
-        *equation, *inverses), equation
+        *equation)), equation
 
 
 def _check_slope(of: _Parts) -> None:
@@ -162,7 +156,6 @@ def _forces(q: Quantities, frame: Frame, of: _Parts) -> tuple[Stage | Solve, ...
     on_node, on_section, on_frame = (of.names.vector(name) for name in ("gp", "onpsi", "onframe"))
     in_section = along_tangent(psi, cross(E, of.N_in.symbols), -1)
     _check_work(q, of, in_section)
-    conjugate = {"position": q.f, "rotation": q.m, "mode": q.fm}
     return (
         Stage("direction of the node in axes of the section", "element",
               sets=((of.N_in, turned(psi, N, -1)),)),
@@ -174,9 +167,7 @@ def _forces(q: Quantities, frame: Frame, of: _Parts) -> tuple[Stage | Solve, ...
             (on_frame, pull.symbols[0] * cross(e, N)))),
         Stage("force along the path", "element", sets=((of.names.scalar("gs"), sp.Matrix(
             [mu * (w_s * of.c.symbols[0] + w * of.c_s.symbols[0])])),)),
-        *(Stage(f"forces conjugate to the local coordinates: {home}s", home, sets=((one, filled(
-            one, [shape.dot(on_section.symbols) for shape in of.names.rows(SHAPES, home)])),))
-          for home, one in conjugate.items()),
+        *of.names.on_coordinates(on_section.symbols),
         *forces_on_unknowns(q, frame, sp.zeros(3, 1), Stage(
             "moment on the frame", "element", adds=((q.W, on_frame.symbols),), continues=True)))
 
@@ -201,9 +192,8 @@ def _check_work(q: Quantities, of: _Parts, in_section: sp.Matrix) -> None:
 def _moved(q: Quantities, frame: Frame, of: _Parts, equation: tuple[Stage, ...],
            forces: tuple[Stage | Solve, ...]) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """Differentials of the equation and of the forces, by the chain rule."""
-    chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
     ds = q.space.d(of.names.scalar("way")).symbols[0]
-    steps, of_y = varied(q, frame, chain, of.names)
+    chain, steps, of_y = varied(q, frame, of.names)
     by_y, bent = of.names.vector("dry"), of.names.vector("drsy")
     dpsi, dpsi_s = of.names.vector("drp"), of.names.vector("rsd_y")
     steps += [
@@ -223,16 +213,14 @@ def _moved(q: Quantities, frame: Frame, of: _Parts, equation: tuple[Stage, ...],
 
 def _rates(q: Quantities, frame: Frame, of: _Parts) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """The equation's rate and second rate: differentials in the direction of time."""
-    clock = Linearizer(q.space, time_rules(q), lambda quantity: rate_of(q, quantity))
-    of_y = tuple(step for step in rates(q) if step.sets)
-    first, later = turning(q, frame, clock, of_y)
+    time = Timed(q, frame)
+    clock, eta = time.clock, time.rates
     sd, sdd, w, w_s, w_ss = (of.number(name) for name in (
         "wayd", "waydd", "share", "share_s", "share_ss"))
     by_y, psi_d, by_slope, psi_sd, spin, E_d, e_d, relative, N_d = (
         of.names.vector(name) for name in (
             "up", "rd", "ut", "rst", "spin", "edge_d", "aim_d", "rel", "side_d"))
     c, c_d = of.c, of.names.scalar("cosine_d")
-    eta = {"position": q.eu, "rotation": q.ep, "mode": q.em}
     psi, E, N, e, R0 = (one.symbols for one in (of.psi, of.E, of.N, of.e, q.R0))
     moving = (
         *of.names.summed(by_y, SHAPES, eta, "rate of the section's rotation"),
@@ -250,9 +238,8 @@ def _rates(q: Quantities, frame: Frame, of: _Parts) -> tuple[tuple[Step, ...], t
         Stage("rate of the cosine", "element", sets=((c_d, sp.Matrix(
             [N_d.symbols.dot(e) + N.dot(e_d.symbols)])),)))
     weighted = sp.Matrix([w_s * sd * c.symbols[0] + w * c_d.symbols[0]])
-    rate = (local_velocity(q), origin_stage(q, q.v0, q.vs), *first, *of_y, *moving,
-            Stage("rate of the weighted equation", "element",
-                  sets=((of.names.scalar("phid"), weighted),)))
+    rate = time.rate(*moving, Stage("rate of the weighted equation", "element",
+                                    sets=((of.names.scalar("phid"), weighted),)))
     curving = (*of.names.summed(by_slope, SLOPES, eta, "turning of the curvature"),
                Stage("rate of the curvature", "element", sets=((
                    psi_sd, by_slope.symbols + of.psi_ss.symbols * sd),)))
@@ -265,8 +252,6 @@ def _rates(q: Quantities, frame: Frame, of: _Parts) -> tuple[tuple[Step, ...], t
     second = differential(weighted, {
         w_s: w_ss * sd, w: w_s * sd, sd: sdd, c.symbols[0]: c_d.symbols[0],
         c_d.symbols[0]: rate_of(q, c_d).symbols[0]})
-    return rate, (
-        origin_stage(q, q.a0, q.acc), *later, *curving,
-        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.eta, n, VECTOR, CHANGES),
-        *accelerated, Stage("second rate of the weighted equation", "element",
-                            sets=((of.names.scalar("phidd"), second),)))
+    return rate, time.second(of.names, curving, *accelerated, Stage(
+        "second rate of the weighted equation", "element",
+        sets=((of.names.scalar("phidd"), second),)))

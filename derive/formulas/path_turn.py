@@ -22,30 +22,27 @@ import sympy as sp
 from sebody.contract.layout import Part
 from sebody.derive.form.arrays import constant
 from sebody.derive.form.counts import n
-from sebody.derive.form.functions import PATH_CHANGE, PATH_PLACE
+from sebody.derive.form.functions import PATH_PLACE
 from sebody.derive.form.spaces import Space
-from sebody.derive.form.steps import Invert, Solve, Stage, Step, call, search
+from sebody.derive.form.steps import Solve, Stage, Step, search
 from sebody.derive.formulas import arrays
-from sebody.derive.formulas.damping import rates
 from sebody.derive.formulas.elastic import conjugate_to
-from sebody.derive.formulas.frames.frame import Frame, FrameOption, origin_stage
-from sebody.derive.formulas.kinematics import local_displacement, local_velocity, unknown_rules
-from sebody.derive.formulas.motion import rate_of, time_rules, turning
-from sebody.derive.formulas.path import (
+from sebody.derive.formulas.frames.frame import Frame, FrameOption
+from sebody.derive.formulas.motion import rate_of
+from sebody.derive.formulas.path_steps import (
     BENDS,
-    CHANGES,
     HEAD,
     SHAPES,
     SLOPES,
     TABLE,
     Names,
     Steps,
-    filled,
+    Timed,
+    local,
     varied,
 )
 from sebody.derive.formulas.pulled_back import forces_on_unknowns
 from sebody.derive.formulas.quantities import Quantities
-from sebody.derive.passes.linearize import Linearizer, along_own
 from sebody.derive.symbolic.variation import along, check_same, differential, rotating
 
 HELD = Part("held", (), "angle of the tangent to the node, which stays")
@@ -82,13 +79,10 @@ def _located(q: Quantities, frame: Frame, names: Names
             (names.scalar("cosine"), sp.Matrix([n_y * t_x - n_x * t_y])))),
         Stage("weighted equation", "element", sets=((
             names.scalar("phi"), sp.Matrix([w * _one(names, "sine")])),)))
-    inverses = tuple(Invert(step) for step in frame.velocity if isinstance(step, Solve))
-    return (
-        origin_stage(q, q.x0, q.x), *frame.locate, local_displacement(q),
-        Stage("internal modes", "mode", sets=((q.ym, q.qm.symbols),)),
+    return local(q, frame, (
         search("angle of the path in the frame", PATH_PLACE, TABLE, _one(names, "way"), arrays.y,
                n, ANGLES, HEAD, SHAPES, SLOPES, BENDS, operations=0),
-        *equation, *inverses), equation
+        *equation)), equation
 
 
 def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, ...]:
@@ -97,16 +91,13 @@ def _forces(q: Quantities, frame: Frame, names: Names) -> tuple[Stage | Solve, .
         "share", "share_s", "tau_s", "mu", "sine", "cosine", "moment"))
     on_frame = sp.Matrix([0, 0, moment])
     _check_work(q, names)
-    conjugate = {"position": q.f, "rotation": q.m, "mode": q.fm}
     return (
         Stage("moment on the body, and minus that on the node", "element", sets=(
             (names.scalar("moment"), sp.Matrix([w * mu * cosine])),
             (names.scalar("gp"), sp.Matrix([-w * mu * cosine])))),
         Stage("force along the path", "element", sets=((
             names.scalar("gs"), sp.Matrix([mu * (w_s * sine + w * tau_s * cosine)])),)),
-        *(Stage(f"forces conjugate to the local coordinates: {home}s", home, sets=((of, filled(
-            of, [shape[0] * moment for shape in names.rows(SHAPES, home)])),))
-          for home, of in conjugate.items()),
+        *names.on_coordinates(sp.Matrix([moment])),
         *forces_on_unknowns(q, frame, sp.zeros(3, 1), Stage(
             "moment on the frame", "element", adds=((q.W, on_frame),), continues=True)))
 
@@ -124,9 +115,8 @@ def _check_work(q: Quantities, names: Names) -> None:
 def _moved(q: Quantities, frame: Frame, names: Names, equation: tuple[Stage, ...],
            forces: tuple[Stage | Solve, ...]) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """Differentials of the equation and of the forces, by the chain rule."""
-    chain = Linearizer(q.space, unknown_rules(q) | along_own(q.space, q.qm))
     ds = q.space.d(names.scalar("way")).symbols
-    steps, of_y = varied(q, frame, chain, names)
+    chain, steps, of_y = varied(q, frame, names)
     by_y, bent = names.scalar("dtau_y"), names.scalar("dtau_sy")
     dtau, dtau_s = names.scalar("tau_d"), names.scalar("tau_sd")
     steps += [
@@ -147,21 +137,18 @@ def _moved(q: Quantities, frame: Frame, names: Names, equation: tuple[Stage, ...
 
 def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...], tuple[Step, ...]]:
     """The equation's rate and second rate: differentials in the direction of time."""
-    clock = Linearizer(q.space, time_rules(q), lambda quantity: rate_of(q, quantity))
-    of_y = tuple(step for step in rates(q) if step.sets)
-    first, later = turning(q, frame, clock, of_y)
+    time = Timed(q, frame)
+    clock, eta = time.clock, time.rates
     sd, sdd, theta_d, theta_dd, w, w_s, w_ss, sine, cosine = (_one(names, name) for name in (
         "wayd", "waydd", "thetad", "thetadd", "share", "share_s", "share_ss", "sine", "cosine"))
     by_y, of_slope, slope_rate, delta = (names.scalar(name) for name in (
         "up", "ut", "rst", "delta_d"))
-    eta = {"position": q.eu, "rotation": q.ep, "mode": q.em}
     relative = (*names.summed(by_y, SHAPES, eta, "rate of the angle"),
                 Stage("rate of the angle between path and node", "element", sets=((delta, sp.Matrix(
                     [q.Om0.symbols[2] + by_y.symbols[0] + _one(names, "tau_s") * sd - theta_d])),)))
     weighted = sp.Matrix([w_s * sd * sine + w * cosine * delta.symbols[0]])
-    rate = (local_velocity(q), origin_stage(q, q.v0, q.vs), *first, *of_y, *relative,
-            Stage("rate of the weighted equation", "element",
-                  sets=((names.scalar("phid"), weighted),)))
+    rate = time.rate(*relative, Stage("rate of the weighted equation", "element",
+                                    sets=((names.scalar("phid"), weighted),)))
     slopes = (*names.summed(of_slope, SLOPES, eta, "turning of the curvature"),
               Stage("rate of the curvature", "element", sets=((
                   slope_rate, of_slope.symbols + names.scalar("tau_ss").symbols * sd),)))
@@ -173,11 +160,9 @@ def _rates(q: Quantities, frame: Frame, names: Names) -> tuple[tuple[Step, ...],
     second = differential(weighted, {
         w_s: w_ss * sd, w: w_s * sd, sp.Symbol("wayd"): sdd, sine: cosine * turned,
         cosine: -sine * turned, turned: again})
-    return rate, (
-        origin_stage(q, q.a0, q.acc), *later, *slopes,
-        call("changes of the shapes", PATH_CHANGE, TABLE, BENDS, arrays.eta, n, ANGLES, CHANGES),
-        *accelerated, Stage("second rate of the weighted equation", "element",
-                            sets=((names.scalar("phidd"), second),)))
+    return rate, time.second(names, slopes, *accelerated, Stage(
+        "second rate of the weighted equation", "element",
+        sets=((names.scalar("phidd"), second),)))
 
 
 def _one(names: Names, name: str) -> sp.Symbol:

@@ -4,8 +4,11 @@ What acts on a body's local coordinates also acts on its frame, since these move
 on the frame is pulled back through the frame's variation.
 """
 
+from collections.abc import Callable
+
 import sympy as sp
 
+from sebody.derive.form.spaces import Quantity
 from sebody.derive.form.steps import Role, Solve, Stage
 from sebody.derive.formulas.frames.frame import Frame
 from sebody.derive.formulas.inertia.option import Inertia
@@ -52,3 +55,21 @@ def forces_on_unknowns(q: Quantities, frame: Frame, share: sp.Matrix, on_frame: 
         Stage("force of the internal modes", "mode",
               sets=((q.gm, q.fm.symbols + frame.mode + (
                   q.pmd.symbols if inertia.products else sp.zeros(1, 1))),)),)
+
+
+def forces_on_coordinates(q: Quantities, rows: Callable[[str], list[sp.Matrix]], f: sp.Matrix
+                          ) -> tuple[Stage, ...]:
+    """Forces conjugate to the local coordinates, of a force f on what moves by rows of them.
+
+    `rows` gives what each coordinate of a position, a rotation or a mode adds to that motion.
+    """
+    return tuple(
+        Stage(f"forces conjugate to the local coordinates: {home}s", home, sets=((of, _filled(
+            of, [row.dot(f) for row in rows(home)])),))
+        for home, of in (("position", q.f), ("rotation", q.m), ("mode", q.fm)))
+
+
+def _filled(of: Quantity, values: list[sp.Expr]) -> sp.Matrix:
+    """Components where a quantity has some, zero elsewhere."""
+    found = iter(values)
+    return sp.Matrix([next(found) if isinstance(s, sp.Symbol) else 0 for s in of.symbols])

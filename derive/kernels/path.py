@@ -5,9 +5,10 @@ from typing import NamedTuple
 from sebody.contract.layout import FRAME_CONSTANTS, Part
 from sebody.contract.names import path_across_kind, path_kind, path_load_kind, path_turn_kind
 from sebody.derive.formulas.frames.frame import FrameOption
-from sebody.derive.formulas.path import LOAD, PATH, LoadSteps, Steps, body_path, path_load
+from sebody.derive.formulas.path import LOAD, LoadSteps, body_path, path_load
 from sebody.derive.formulas.path_across import body_across
 from sebody.derive.formulas.path_direction import DIRECTION, body_direction, section_names
+from sebody.derive.formulas.path_steps import PATH, Steps
 from sebody.derive.formulas.path_turn import HELD, body_turn
 from sebody.derive.kernels.body_contact import BODY_CONTACTS
 from sebody.derive.kernels.layouts import Layout
