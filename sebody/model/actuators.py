@@ -15,17 +15,8 @@ from sebody.model.arguments import chosen_name, dof_block, known, rotation_vecto
 from sebody.model.histories import input_history
 from sebody.model.mechanism import Mechanism
 from sebody.model.pairs import pair
-from sebody.model.parts import (
-    SLIDES,
-    TURNS,
-    Attachment,
-    Element,
-    Joint,
-    Node,
-    Rope,
-    positions,
-    rotations,
-)
+from sebody.model.parts import SLIDES, TURNS, Attachment, Element, Joint, Node, positions, rotations
+from sebody.model.rope_parts import Rope
 from sebody.model.time_functions import TimeFunction
 from sebody.model.winches import wound_end
 

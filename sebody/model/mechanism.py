@@ -25,11 +25,10 @@ from sebody.model.parts import (
     Motion,
     Node,
     Path,
-    Rope,
-    Sheave,
     Superelement,
 )
 from sebody.model.plane import Plane
+from sebody.model.rope_parts import Rope, Sheave
 
 
 @dataclass(eq=False, repr=False)

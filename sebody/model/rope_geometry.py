@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
-from sebody.model.parts import Node, RopePlace, Sheave
+from sebody.model.parts import Node
+from sebody.model.rope_parts import RopePlace, Sheave
 
 Z = np.array([0.0, 0.0, 1.0])
 OFF = 1e-6          # sine of the angle by which a rope may be off the plane of a sheave

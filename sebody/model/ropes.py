@@ -17,21 +17,9 @@ from sebody.model.arguments import chosen_name, direction, dof_block, known, ref
 from sebody.model.histories import Source
 from sebody.model.mechanism import Mechanism
 from sebody.model.nodes import ground
-from sebody.model.parts import (
-    ROPE,
-    Attachment,
-    DofBlock,
-    Element,
-    Joint,
-    Motion,
-    Node,
-    Rope,
-    RopePlace,
-    Sheave,
-    Stretch,
-    positions,
-)
+from sebody.model.parts import Attachment, DofBlock, Element, Joint, Motion, Node, positions
 from sebody.model.rope_geometry import Span, spans_of
+from sebody.model.rope_parts import ROPE, Rope, RopePlace, Sheave, Stretch
 from sebody.model.time_functions import TimeFunction
 from sebody.model.winches import motion_of_drive
 

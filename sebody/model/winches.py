@@ -4,7 +4,8 @@ from sebody.basics import inputs
 from sebody.basics.errors import InputError
 from sebody.basics.spelling import unknown
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Attachment, Rope
+from sebody.model.parts import Attachment
+from sebody.model.rope_parts import Rope
 from sebody.model.time_functions import TimeFunction
 
 

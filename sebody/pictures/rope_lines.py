@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Rope, RopePlace, Sheave
+from sebody.model.parts import Element
+from sebody.model.rope_parts import Rope, RopePlace, Sheave
 from sebody.pictures.contact_shapes import across_of
 from sebody.pictures.drawn_nodes import DrawnNode
 from sebody.pictures.surface import spatial

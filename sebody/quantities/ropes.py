@@ -1,6 +1,7 @@
 """Formulas of ropes and sheaves: tensions, lengths, elongation, angles."""
 
-from sebody.model.parts import Element, Rope, RopePlace, Sheave, Stretch
+from sebody.model.parts import Element
+from sebody.model.rope_parts import Rope, RopePlace, Sheave, Stretch
 from sebody.quantities.algebra import total
 from sebody.quantities.expressions import Number, positive
 from sebody.quantities.numbers import Numbers, Parts

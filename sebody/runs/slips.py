@@ -5,7 +5,8 @@ import numpy as np
 from sebody.engine.state import State
 from sebody.model.mechanism import Mechanism
 from sebody.model.numbering import Numbering
-from sebody.model.parts import DofBlock, Rope
+from sebody.model.parts import DofBlock
+from sebody.model.rope_parts import Rope
 
 
 def begin_slips(model: Mechanism, numbering: Numbering, state: State) -> None:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from sebody.basics.errors import InputError
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import ROPE, Axes, Element, Joint, positions, rotations
+from sebody.model.parts import Axes, Element, Joint, positions, rotations
+from sebody.model.rope_parts import ROPE
 from sebody.model.spring_laws import unpacked
 from sebody.model.variants.flat_contacts import LAWS, flat_places, sign_of_angle
 from sebody.model.variants.flat_ropes import ROPE_KINDS, flat_wheel, rope_equation, sharing

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sebody.model.mechanism import Mechanism
-from sebody.model.parts import Element, Joint, Rope, Sheave, Stretch
+from sebody.model.parts import Element, Joint
+from sebody.model.rope_parts import Rope, Sheave, Stretch
 from sebody.model.variants.flattening import Flattening
 
 ROPE_KINDS = "rope", "rope_line", "rope_end", "rope_span", "rope_grip"
